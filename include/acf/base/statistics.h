@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_base_statistics_h
+#define acf_base_statistics_h
+
+#include <chrono>
+#include <cstddef>
+#include <map>
+#include <string>
+
+namespace ACF
+{
+  /** Counters and times of a run; what a scene does not use stays zero. */
+  struct Statistics
+  {
+    /** Accepted steps. */
+    unsigned long steps = 0;
+
+    /** Trial steps that did not converge. */
+    unsigned long rejected_steps = 0;
+
+    /** Halvings of the step size. */
+    unsigned long halvings = 0;
+
+    unsigned long newton_iterations = 0;
+
+    /** Largest number of iterations of an accepted step. */
+    unsigned int max_newton_iterations = 0;
+
+    /** Factorisations of real and of complex shifted matrices. */
+    unsigned long real_factorizations    = 0;
+    unsigned long complex_factorizations = 0;
+
+    /** Right-hand sides solved in the time loop. */
+    unsigned long real_solves    = 0;
+    unsigned long complex_solves = 0;
+
+    /** Right-hand sides solved for joints and checks, once per factor. */
+    unsigned long setup_solves = 0;
+
+    /** Evaluations of a body's elastic force. */
+    unsigned long force_evaluations = 0;
+
+    /** Factorised Schur complements of the joints. */
+    unsigned long schur_complements = 0;
+
+    /** Evaluations of von Mises stresses (bodies times output times). */
+    unsigned long stress_evaluations = 0;
+
+    /** Files and rows written. */
+    unsigned long vtu_files  = 0;
+    unsigned long probe_rows = 0;
+
+    /** Entries and bytes of all cached factors. */
+    std::size_t factor_entries = 0;
+    std::size_t factor_bytes   = 0;
+
+    /** Bytes of the columns that joints need per factor. */
+    std::size_t joint_column_bytes = 0;
+
+    /** Largest backward error of a test solve after a factorisation. */
+    double factor_backward_error = 0;
+
+    /** Wall time per phase, s. */
+    std::map<std::string, double> wall_times;
+  };
+
+
+
+  /** Adds the time from construction to destruction to a phase. */
+  class PhaseTimer
+  {
+  public:
+    PhaseTimer(Statistics &statistics, const char *phase)
+      : total(statistics.wall_times[phase])
+      , start(std::chrono::steady_clock::now())
+    {}
+
+    ~PhaseTimer()
+    {
+      total += std::chrono::duration<double>(std::chrono::steady_clock::now() -
+                                             start)
+                 .count();
+    }
+
+    PhaseTimer(const PhaseTimer &) = delete;
+    PhaseTimer &
+    operator=(const PhaseTimer &) = delete;
+
+  private:
+    double                                     &total;
+    const std::chrono::steady_clock::time_point start;
+  };
+
+  /** Largest resident memory of the process so far, bytes. */
+  std::size_t
+  peak_memory();
+} // namespace ACF
+
+#endif

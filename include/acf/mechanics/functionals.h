@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_mechanics_functionals_h
+#define acf_mechanics_functionals_h
+
+#include <acf/base/types.h>
+
+#include <set>
+
+namespace ACF
+{
+  class BodyDiscretization;
+
+  /**
+   * A linear functional of a body's positions whose value is a vector,
+   * $s(x) = \sum_a w_a x_a$, with few nonzero weights. Joints, force elements
+   * and probes see a body only through such values.
+   */
+  struct NodalFunctional
+  {
+    /** Nodes with a weight, ascending. */
+    std::vector<unsigned int> nodes;
+
+    /** Their weights $w_a$. */
+    std::vector<double> weights;
+
+    /** $s(x)$ for nodal positions, displacements or velocities x. */
+    Vector3
+    operator()(const NodalVector &x) const;
+
+    /** Adjoint: adds $w_a F$ to the nodal force of each node. */
+    void
+    add_adjoint(const Vector3 &F, NodalVector &force) const;
+
+    bool
+    operator==(const NodalFunctional &other) const
+    {
+      return nodes == other.nodes && weights == other.weights;
+    }
+  };
+
+
+
+  /** Area, centroid and second moments of a surface in the reference state. */
+  struct SurfaceGeometry
+  {
+    /** m^2 */
+    double area = 0;
+
+    /** $\bar X$, m */
+    Vector3 centroid;
+
+    /** $J = \frac1A \int (X - \bar X) \otimes (X - \bar X)\, dA$, m^2 */
+    Matrix3 second_moment;
+
+    /**
+     * How well the surface's mean deformation gradient resolves a direction:
+     * $\sqrt{a \cdot J a}$, m; zero for the normal of a plane surface.
+     */
+    double
+    extent(const Vector3 &unit_direction) const;
+
+    /** $J^+ a$ with the pseudo-inverse of J. */
+    Vector3
+    solve_second_moment(const Vector3 &a) const;
+
+    /** Whether $J J^+ a = a$ up to round-off: a lies in the surface's span. */
+    bool
+    resolves(const Vector3 &unit_direction) const;
+  };
+
+  SurfaceGeometry
+  surface_geometry(const BodyDiscretization           &body,
+                   const std::set<types::boundary_id> &surface);
+
+  /** Mean position: $s(x) = \frac1A \int x\, dA$, m. */
+  NodalFunctional
+  surface_mean(const BodyDiscretization           &body,
+               const std::set<types::boundary_id> &surface);
+
+  /**
+   * First moment of the positions: $s(x) = \frac1A \int
+   * (v \cdot (X - \bar X))\, x\, dA$, with affine weights (paper Sec. 4).
+   */
+  NodalFunctional
+  surface_moment(const BodyDiscretization           &body,
+                 const std::set<types::boundary_id> &surface,
+                 const Vector3                      &v);
+
+  /**
+   * Mean of a material direction d (unit vector in the reference state):
+   * $s(x) = \frac1A \int (d \cdot J^+ (X - \bar X))\, x\, dA$,
+   * the surface_moment() of $J^+ d$. For an affine motion x = F X it is F d.
+   *
+   * @pre surface_geometry().resolves(d)
+   */
+  NodalFunctional
+  surface_director(const BodyDiscretization           &body,
+                   const std::set<types::boundary_id> &surface,
+                   const Vector3                      &direction);
+
+  /**
+   * Position of a material point: $s(x) = \sum_a \phi_a(X) x_a$, m.
+   *
+   * @throws SimulationError if the body does not contain the point; its text
+   * names the distance of the nearest node
+   */
+  NodalFunctional
+  material_point(const BodyDiscretization &body, const Point<dim> &X);
+
+  /** The sum of two functionals, the second scaled. */
+  NodalFunctional
+  linear_combination(const NodalFunctional &first,
+                     const double           factor,
+                     const NodalFunctional &second);
+} // namespace ACF
+
+#endif

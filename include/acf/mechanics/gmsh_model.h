@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_mechanics_gmsh_model_h
+#define acf_mechanics_gmsh_model_h
+
+#include <acf/mechanics/mesh_data.h>
+
+#include <map>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace ACF
+{
+  /**
+   * gmsh's library, from its initialisation to the end of all its data; the
+   * functions below need one. There can be one at a time: gmsh has one global
+   * state.
+   */
+  class GmshSession
+  {
+  public:
+    GmshSession();
+    ~GmshSession();
+
+    GmshSession(const GmshSession &) = delete;
+    GmshSession &
+    operator=(const GmshSession &) = delete;
+  };
+
+  /** Elements of one type on one geometric entity of gmsh's current model. */
+  struct ElementBlock
+  {
+    /** Tag of the entity. */
+    int entity;
+
+    /** gmsh's number of the type. */
+    int type;
+
+    /** Numbers of the elements. */
+    std::vector<std::size_t> tags;
+
+    /** Numbers of their nodes, element by element. */
+    std::vector<std::size_t> nodes;
+  };
+
+  /** Names that entities (by their tags) of one dimension have. */
+  using EntityNames = std::map<int, std::set<std::string>>;
+
+  /**
+   * The names of the physical groups of a dimension (2 or 3) each entity
+   * belongs to, without the entities in no group; "surface 5" or "volume 5" for
+   * group 5 if it has no name.
+   * @throws InputError if a group is empty
+   */
+  EntityNames
+  physical_groups(const int dimension, const MeshSource &source);
+
+  /** All entities of a dimension (2 or 3), called "surface 5" or "volume 5". */
+  EntityNames
+  geometric_entities(const int dimension);
+
+  /** The elements of the entities in @p names, in the order of their tags. */
+  std::vector<ElementBlock>
+  elements_of(const int dimension, const EntityNames &names);
+
+  /** "tetrahedra", "wedges" ... of a type of element of any order. */
+  std::string
+  element_family(const int type);
+
+  /** "12 tetrahedra and 3 wedges" */
+  std::string
+  describe_elements(const std::vector<ElementBlock> &blocks);
+
+  /**
+   * Files of format 2.2 repeat an element for each of its groups, and gmsh
+   * gives all elements of an entity all of the groups it met there: keep one
+   * of each.
+   * @throws InputError if not all elements of an entity are in all its groups
+   */
+  void
+  remove_repetitions(std::vector<ElementBlock> &blocks,
+                     const EntityNames &names,
+                     const MeshSource &source);
+
+  /**
+   * Add cells, faces and their vertices to @p data.
+   * @param cells tetrahedra or hexahedra of any order; only their corners are
+   *   taken
+   * @param cell_ids material id for each entity of cells
+   * @param faces triangles or quadrilaterals
+   * @param face_ids boundary id for each entity of faces
+   * @param scale metres per unit of length of the model
+   * @throws InputError if nodes of higher order are not where straight edges
+   *   (flat cells) have them, up to 1e-5 of the size of the cell
+   */
+  void
+  read_elements(const std::vector<ElementBlock> &cells,
+                const std::map<int, unsigned int> &cell_ids,
+                const std::vector<ElementBlock> &faces,
+                const std::map<int, unsigned int> &face_ids,
+                const double scale,
+                const MeshSource &source,
+                MeshData &data);
+} // namespace ACF
+
+#endif

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_model_h
+#define acf_model_h
+
+#include <acf/base/parameter_file.h>
+
+#include <acf/io/probes.h>
+#include <acf/io/vtu_output.h>
+
+namespace ACF
+{
+  /** What a model file says of the results. */
+  struct OutputParameters
+  {
+    /** Relative to the folder in which the program runs; empty: see model. */
+    std::string directory;
+
+    /** s; zero: every step */
+    double probe_interval = 0;
+
+    VtuParameters vtu;
+
+    void
+    add_parameters(ParameterHandler &prm);
+  };
+
+
+
+  /** Everything that a model file says, checked as far as no mesh is needed. */
+  struct Model
+  {
+    std::string                  title;
+    std::vector<BodyParameters>  bodies;
+    std::vector<JointParameters> joints;
+    LoadParameters               loads;
+    TimeParameters               time;
+    OutputParameters             output;
+    std::vector<ProbeParameters> probes;
+
+    /** Folder of the model file: relative mesh file names start here. */
+    std::filesystem::path directory;
+
+    /** All values, as a model file. */
+    std::string used_parameters;
+  };
+
+  /**
+   * @throws InputError with file and line
+   */
+  Model
+  read_model(const ParameterFile &file);
+
+  /** A documented model file of all entries and their defaults. */
+  std::string
+  default_model_file();
+} // namespace ACF
+
+#endif

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_solvers_factorization_cache_h
+#define acf_solvers_factorization_cache_h
+
+#include <acf/base/statistics.h>
+
+#include <acf/mechanics/body.h>
+
+#include <acf/solvers/shifted_factorization.h>
+
+#include <Eigen/Dense>
+
+#include <map>
+#include <memory>
+
+namespace ACF
+{
+  /**
+   * The factorisation of a body's shifted matrix K with what the joints need of
+   * it, all in the body's frame and so independent of its rotation (paper
+   * Eq. (32)): the columns $Y_{pj} = K^{-1} (w_p \otimes e_j)$ of the joint
+   * functionals and their compliance
+   * $C_{pi,qj} = (w_p \otimes e_i)^T Y_{qj}$.
+   */
+  template <typename Number>
+  class JointedFactorization
+  {
+  public:
+    using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
+    using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
+
+    JointedFactorization(const Body &body, const Number shift);
+
+    ShiftedFactorization<Number> &
+    factorization()
+    {
+      return factor;
+    }
+
+    /** C, size 3 n x 3 n for n joint functionals. */
+    const Matrix &
+    compliance() const
+    {
+      return joint_compliance;
+    }
+
+    /** Values of the joint functionals of a vector, size 3 n. */
+    Vector
+    functional_values(const std::vector<Number> &x) const;
+
+    /** $x \leftarrow x - Y F$ for forces F on the functionals, size 3 n. */
+    void
+    subtract_columns(const Vector &F, std::vector<Number> &x) const;
+
+    std::size_t
+    column_bytes() const
+    {
+      return columns.size() * sizeof(Number);
+    }
+
+  private:
+    ShiftedFactorization<Number>           factor;
+    const std::vector<NodalFunctional>    &functionals;
+    std::size_t                            n_unknowns;
+    std::vector<Number>                    columns;
+    Matrix                                 joint_compliance;
+  };
+
+
+
+  /**
+   * Keeps every factorisation that was ever needed: one per body and shift, in
+   * practice one per body and step size.
+   */
+  class FactorizationCache
+  {
+  public:
+    explicit FactorizationCache(Statistics &statistics);
+
+    JointedFactorization<double> &
+    get(const Body &body, const double shift);
+
+    JointedFactorization<std::complex<double>> &
+    get(const Body &body, const std::complex<double> shift);
+
+  private:
+    template <typename Number>
+    JointedFactorization<Number> &
+    find_or_factorize(
+      std::map<std::tuple<const Body *, double, double>,
+               std::unique_ptr<JointedFactorization<Number>>> &factors,
+      const Body                                              &body,
+      const Number                                             shift,
+      unsigned long                                           &counter);
+
+    using Key = std::tuple<const Body *, double, double>;
+
+    Statistics &statistics;
+    std::map<Key, std::unique_ptr<JointedFactorization<double>>> real_factors;
+    std::map<Key, std::unique_ptr<JointedFactorization<std::complex<double>>>>
+      complex_factors;
+  };
+} // namespace ACF
+
+#endif

@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_solvers_stage_solver_h
+#define acf_solvers_stage_solver_h
+
+#include <acf/solvers/butcher_tableau.h>
+#include <acf/solvers/joint_schur_complement.h>
+
+#include <memory>
+
+namespace ACF
+{
+  /** Nodal vectors of all bodies for each stage: [stage][body]. */
+  using StageVector = std::vector<SystemVector>;
+
+  /** Constraint rows for each stage. */
+  using StageConstraints = std::vector<Eigen::VectorXd>;
+
+  /**
+   * Solves the linear system of a simplified Newton iteration for the stage
+   * increments,
+   * \f[ (\tau^{-2} A_{RK}^{-2} \otimes M + I \otimes R A R^T) \Delta Z
+   *     + (I \otimes B^T) \Delta\Lambda = r, \qquad
+   *     (I \otimes B) \Delta Z = g, \f]
+   * or an approximation of it, with factorisations that depend on the step size
+   * only. The rotations are frozen by prepare().
+   */
+  class StageSolver
+  {
+  public:
+    virtual ~StageSolver() = default;
+
+    /**
+     * Chooses the step size and freezes the rotations of the bodies. Factorises
+     * what the cache does not have.
+     */
+    virtual void
+    prepare(const double                step_size,
+            const std::vector<Matrix3> &rotations) = 0;
+
+    /**
+     * @param[in,out] stages r, replaced by $\Delta Z$, in the world frame
+     * @param[in,out] constraints g, replaced by $\Delta\Lambda$
+     */
+    virtual void
+    solve(StageVector &stages, StageConstraints &constraints) = 0;
+  };
+
+
+
+  /**
+   * Exact solution by diagonalisation $A_{RK}^{-2} = T D T^{-1}$: one complex
+   * factorisation $(d/\tau^2) M + A$ for a conjugate pair, one real one for a
+   * real eigenvalue.
+   */
+  class DiagonalizedStageSolver : public StageSolver
+  {
+  public:
+    DiagonalizedStageSolver(const MultibodySystem &system,
+                            const ButcherTableau  &tableau,
+                            FactorizationCache    &cache,
+                            Statistics            &statistics);
+
+    void
+    prepare(const double                step_size,
+            const std::vector<Matrix3> &rotations) override;
+
+    void
+    solve(StageVector &stages, StageConstraints &constraints) override;
+
+  private:
+    template <typename Number>
+    void
+    solve_component(const StageDiagonalization::Component &component,
+                    JointSchurComplement<Number>          &schur_complement,
+                    const StageVector                     &stages,
+                    const StageConstraints                &constraints,
+                    StageVector                           &stage_increments,
+                    StageConstraints &constraint_increments);
+
+    const MultibodySystem     &system;
+    const StageDiagonalization diagonalization;
+    FactorizationCache        &cache;
+    Statistics                &statistics;
+    std::vector<Matrix3>       rotations;
+
+    /** One of the two for each component, depending on its eigenvalue. */
+    std::vector<std::unique_ptr<JointSchurComplement<double>>> real_systems;
+    std::vector<std::unique_ptr<JointSchurComplement<std::complex<double>>>>
+      complex_systems;
+  };
+
+
+
+  /**
+   * Approximate solution with real one-step matrices, stage by stage, in the
+   * manner of the paper (Sec. 7.1): $A_{RK}^2 \approx L D$, so that with
+   * $\Delta Z = \tau^2 L D\, \Delta Y$
+   * \f[ (M + \tau^2 D_i A) \Delta Y_i + B^T \Delta\Lambda_i = r_i -
+   *     \tau^2 A \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
+   */
+  class OneStepStageSolver : public StageSolver
+  {
+  public:
+    OneStepStageSolver(const MultibodySystem &system,
+                       const ButcherTableau  &tableau,
+                       FactorizationCache    &cache,
+                       Statistics            &statistics);
+
+    void
+    prepare(const double                step_size,
+            const std::vector<Matrix3> &rotations) override;
+
+    void
+    solve(StageVector &stages, StageConstraints &constraints) override;
+
+  private:
+    const MultibodySystem       &system;
+    const StageTriangularization triangularization;
+    FactorizationCache          &cache;
+    Statistics                  &statistics;
+    std::vector<Matrix3>         rotations;
+
+    std::vector<std::unique_ptr<JointSchurComplement<double>>> systems;
+  };
+} // namespace ACF
+
+#endif

@@ -1,0 +1,381 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/console.h>
+#include <acf/base/exceptions.h>
+#include <acf/io/vtu_output.h>
+#include <acf/mechanics/reduced_strain.h>
+
+#include <deal.II/base/data_out_base.h>
+#include <deal.II/base/symmetric_tensor.h>
+#include <deal.II/base/utilities.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <zlib.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+namespace ACF
+{
+  namespace
+  {
+    static_assert(
+      __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
+      "The byte order of the VTU files is written as little endian");
+
+    template <typename Number>
+    constexpr const char *vtk_type = nullptr;
+    template <>
+    constexpr const char *vtk_type<double> = "Float64";
+    template <>
+    constexpr const char *vtk_type<float> = "Float32";
+    template <>
+    constexpr const char *vtk_type<std::int64_t> = "Int64";
+    template <>
+    constexpr const char *vtk_type<std::int32_t> = "Int32";
+    template <>
+    constexpr const char *vtk_type<std::uint8_t> = "UInt8";
+
+
+
+    /** A cell type of VTK and its nodes, in half edges of the unit cell. */
+    struct VtkCell
+    {
+      std::uint8_t type;
+      std::vector<std::array<unsigned int, dim>> nodes;
+    };
+
+
+
+    // VTK_QUADRATIC_TETRA and VTK_LAGRANGE_HEXAHEDRON: corners, edges,
+    // faces (-x, +x, -y, +y, -z, +z), centre. VTK_TRIQUADRATIC_HEXAHEDRON has
+    // the same order, but many versions of VTK cannot integrate over it.
+    VtkCell
+    vtk_cell(const bool is_simplex)
+    {
+      if (is_simplex)
+        return {24,
+                {{{0, 0, 0}},
+                 {{2, 0, 0}},
+                 {{0, 2, 0}},
+                 {{0, 0, 2}},
+                 {{1, 0, 0}},
+                 {{1, 1, 0}},
+                 {{0, 1, 0}},
+                 {{0, 0, 1}},
+                 {{1, 0, 1}},
+                 {{0, 1, 1}}}};
+      return {72,
+              {{{0, 0, 0}}, {{2, 0, 0}}, {{2, 2, 0}}, {{0, 2, 0}}, {{0, 0, 2}},
+               {{2, 0, 2}}, {{2, 2, 2}}, {{0, 2, 2}}, {{1, 0, 0}}, {{2, 1, 0}},
+               {{1, 2, 0}}, {{0, 1, 0}}, {{1, 0, 2}}, {{2, 1, 2}}, {{1, 2, 2}},
+               {{0, 1, 2}}, {{0, 0, 1}}, {{2, 0, 1}}, {{2, 2, 1}}, {{0, 2, 1}},
+               {{0, 1, 1}}, {{2, 1, 1}}, {{1, 0, 1}}, {{1, 2, 1}}, {{1, 1, 0}},
+               {{1, 1, 2}}, {{1, 1, 1}}}};
+    }
+
+
+
+    // For each node of VTK's cell, the index of the shape function that belongs
+    // to it: found by its place, not to depend on deal.II's numbering.
+    std::vector<unsigned int>
+    shape_functions_in_vtk_order(const VtkCell &vtk,
+                                 const FiniteElement<dim> &element)
+    {
+      const std::vector<Point<dim>> &support =
+        element.get_unit_support_points();
+      AssertDimension(support.size(), vtk.nodes.size());
+      std::vector<unsigned int> order;
+      for (const auto &node : vtk.nodes)
+      {
+        const Point<dim> point(node[0] / 2., node[1] / 2., node[2] / 2.);
+        const auto it =
+          std::find_if(support.begin(), support.end(), [&](const auto &p) {
+            return p.distance(point) < 1e-6;
+          });
+        Assert(it != support.end(), ExcInternalError());
+        order.push_back(it - support.begin());
+      }
+      return order;
+    }
+
+
+
+    // A data array in VTK's form: base64 of the numbers of blocks (one), bytes
+    // per block, bytes in an incomplete block (none) and compressed bytes; then
+    // base64 of what zlib makes of the values.
+    template <typename Number>
+    std::string
+    data_array(const std::string &name,
+               const unsigned int n_components,
+               const std::vector<Number> &values)
+    {
+      const uLong n_bytes = values.size() * sizeof(Number);
+      uLongf n_packed     = compressBound(n_bytes);
+      std::vector<unsigned char> packed(n_packed);
+      const int status =
+        compress2(packed.data(),
+                  &n_packed,
+                  reinterpret_cast<const unsigned char *>(values.data()),
+                  n_bytes,
+                  Z_BEST_SPEED);
+      AssertThrow(status == Z_OK, ExcInternalError());
+      packed.resize(n_packed);
+
+      const std::array<std::uint64_t, 4> sizes = {{1, n_bytes, 0, n_packed}};
+      std::vector<unsigned char> header(sizeof(sizes));
+      std::memcpy(header.data(), sizes.data(), header.size());
+
+      return "<DataArray type=\"" + std::string(vtk_type<Number>) +
+             "\" Name=\"" + name + "\" NumberOfComponents=\"" +
+             std::to_string(n_components) + "\" format=\"binary\">" +
+             Utilities::encode_base64(header) +
+             Utilities::encode_base64(packed) + "</DataArray>\n";
+    }
+
+
+
+    template <typename Number, typename Vector>
+    std::string
+    data_array(const std::string &name,
+               const unsigned int n_components,
+               const Vector &values)
+    {
+      return data_array(name,
+                        n_components,
+                        std::vector<Number>(values.begin(), values.end()));
+    }
+
+
+
+    // Everything of a piece that does not depend on time.
+    std::string
+    geometry(const BodyDiscretization &body,
+             const NodalVector &initial_positions,
+             const unsigned int index)
+    {
+      const VtkCell vtk = vtk_cell(body.mesh().is_simplex());
+      const std::vector<unsigned int> order =
+        shape_functions_in_vtk_order(vtk, body.scalar_element());
+      const unsigned int n_cells = body.mesh().triangulation().n_active_cells();
+
+      std::vector<std::int64_t> connectivity, offsets;
+      connectivity.reserve(n_cells * order.size());
+      std::vector<unsigned int> nodes(order.size());
+      for (const auto &cell : body.dof_handler().active_cell_iterators())
+      {
+        body.get_nodes(cell, nodes);
+        for (const unsigned int i : order)
+          connectivity.push_back(nodes[i]);
+        offsets.push_back(connectivity.size());
+      }
+
+      return "<Points>\n" +
+             data_array<double>("Points", dim, initial_positions) +
+             "</Points>\n<Cells>\n" +
+             data_array("connectivity", 1, connectivity) +
+             data_array("offsets", 1, offsets) +
+             data_array("types",
+                        1,
+                        std::vector<std::uint8_t>(n_cells, vtk.type)) +
+             "</Cells>\n<CellData Scalars=\"body\">\n" +
+             data_array("body", 1, std::vector<std::int32_t>(n_cells, index)) +
+             "</CellData>\n";
+    }
+
+
+
+    // Stress tensors at the nodes, averaged over the cells.
+    std::vector<SymmetricTensor<2, dim>>
+    nodal_stresses(const Body &body, const NodalVector &q)
+    {
+      const BodyDiscretization &space = body.discretization();
+      const double lambda             = body.material().lambda();
+      const double mu                 = body.material().mu();
+
+      FEValues<dim> values(space.mesh().mapping(),
+                           space.scalar_element(),
+                           Quadrature<dim>(
+                             space.scalar_element().get_unit_support_points()),
+                           update_gradients);
+      std::vector<unsigned int> nodes(values.dofs_per_cell);
+      std::vector<unsigned int> n_cells(space.n_nodes(), 0);
+      std::vector<SymmetricTensor<2, dim>> stresses(space.n_nodes());
+
+      for (const auto &cell : space.dof_handler().active_cell_iterators())
+      {
+        values.reinit(typename Triangulation<dim>::active_cell_iterator(cell));
+        space.get_nodes(cell, nodes);
+        for (const unsigned int point : values.quadrature_point_indices())
+        {
+          Matrix3 gradient;
+          for (const unsigned int i : values.dof_indices())
+            for (unsigned int c = 0; c < dim; ++c)
+              gradient[c] +=
+                q[dim * nodes[i] + c] * values.shape_grad(i, point);
+          const SymmetricTensor<2, dim> strain = symmetrize(gradient);
+          stresses[nodes[point]] +=
+            lambda * trace(strain) * unit_symmetric_tensor<dim>() +
+            2 * mu * strain;
+          ++n_cells[nodes[point]];
+        }
+      }
+      for (unsigned int a = 0; a < space.n_nodes(); ++a)
+        stresses[a] /= n_cells[a];
+      return stresses;
+    }
+
+
+
+    // Nobody ever sees a part of a file under its name.
+    void
+    write_file(const std::filesystem::path &file, const std::string &content)
+    {
+      const std::filesystem::path temporary = file.string() + ".tmp";
+      std::error_code error;
+
+      errno = 0;
+      std::ofstream stream(temporary, std::ios::binary);
+      stream << content << std::flush;
+      stream.close();
+      if (!stream)
+        error.assign(errno != 0 ? errno : EIO, std::generic_category());
+      else
+        std::filesystem::rename(temporary, file, error);
+      if (!error)
+        return;
+
+      std::error_code ignored;
+      std::filesystem::remove(temporary, ignored);
+      throw SimulationError("The file '" + file.string() +
+                            "' cannot be written: " + error.message() + ".");
+    }
+  } // namespace
+
+
+
+  void
+  VtuParameters::add_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("VTU interval",
+                      interval,
+                      "Time between two files for ParaView; 0: no such files. "
+                      "Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter("VTU stress",
+                      stress,
+                      "Whether the files for ParaView contain the von Mises "
+                      "stress. Units: none.");
+  }
+
+
+
+  std::optional<std::vector<double>>
+  von_mises_stress(const Body &body, const NodalVector &positions)
+  {
+    const std::optional<BodyRotation> frame =
+      body_rotation(mean_deformation_gradient(body.operators(), positions),
+                    body.rotation_measure());
+    if (!frame)
+      return {};
+
+    NodalVector q(positions.size());
+    co_rotated_displacement(body.operators(), positions, frame->rotation, q);
+    std::vector<double> result;
+    result.reserve(body.operators().n_nodes);
+    for (const SymmetricTensor<2, dim> &stress : nodal_stresses(body, q))
+      result.push_back(std::sqrt(1.5) * deviator(stress).norm());
+    return result;
+  }
+
+
+
+  VtuOutput::VtuOutput(const MultibodySystem &system,
+                       const std::filesystem::path &directory,
+                       const VtuParameters &parameters,
+                       Statistics &statistics)
+    : Observer(parameters.interval)
+    , system(system)
+    , directory(directory)
+    , stress(parameters.stress)
+    , statistics(statistics)
+  {
+    Assert(parameters.interval > 0,
+           ExcMessage("Without an interval there are no VTU files."));
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+    {
+      const Body &body = system.bodies()[b];
+      initial_positions.push_back(body.initial_positions());
+      geometries.push_back(
+        geometry(body.discretization(), initial_positions.back(), b));
+    }
+  }
+
+
+
+  std::string
+  VtuOutput::piece(const unsigned int b, const SystemState &state) const
+  {
+    const Body &body         = system.bodies()[b];
+    NodalVector displacement = state.positions[b];
+    displacement -= initial_positions[b];
+
+    std::string fields =
+      data_array<double>("displacement", dim, displacement) +
+      data_array<float>("velocity", dim, state.velocities[b]);
+    if (stress)
+    {
+      const auto values = von_mises_stress(body, state.positions[b]);
+      if (!values)
+        throw SimulationError("The body '" + body.name() + "' at time " +
+                              format_number(state.time) +
+                              " s is so deformed that it has no rotation; "
+                              "its stress cannot be evaluated.");
+      fields += data_array<float>("von_mises_stress", 1, *values);
+    }
+
+    return "<Piece NumberOfPoints=\"" +
+           std::to_string(body.discretization().n_nodes()) +
+           "\" NumberOfCells=\"" +
+           std::to_string(
+             body.discretization().mesh().triangulation().n_active_cells()) +
+           "\">\n<PointData Vectors=\"displacement\">\n" + fields +
+           "</PointData>\n" + geometries[b] + "</Piece>\n";
+  }
+
+
+
+  void
+  VtuOutput::observe(const SystemState &state)
+  {
+    // version 2.2 stands for today's order of the nodes of Lagrange cells
+    std::string content =
+      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" "
+      "version=\"2.2\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
+      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      content += piece(b, state);
+    content += "</UnstructuredGrid>\n</VTKFile>\n";
+    if (stress)
+      statistics.stress_evaluations += system.bodies().size();
+
+    const std::string name =
+      "solution-" + Utilities::int_to_string(times_and_names.size(), 6) +
+      ".vtu";
+    write_file(directory / name, content);
+    ++statistics.vtu_files;
+
+    times_and_names.emplace_back(state.time, name);
+    std::ostringstream record;
+    DataOutBase::write_pvd_record(record, times_and_names);
+    write_file(directory / "solution.pvd", record.str());
+  }
+} // namespace ACF

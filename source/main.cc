@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+
+#include <acf/simulation.h>
+
+#include <deal.II/base/exceptions.h>
+
+#include <iostream>
+#include <new>
+
+namespace
+{
+  // The only place that reports exceptions; returns the exit status.
+  int
+  report_current_exception()
+  {
+    try
+      {
+        throw;
+      }
+    catch (const ACF::InputError &error)
+      {
+        std::cerr << "acf-dealii: " << error.what() << std::endl;
+        return 2;
+      }
+    catch (const std::bad_alloc &)
+      {
+        std::cerr << "acf-dealii: not enough memory" << std::endl;
+      }
+    catch (const std::exception &error)
+      {
+        std::cerr << "acf-dealii: " << error.what() << std::endl;
+      }
+    catch (...)
+      {
+        std::cerr << "acf-dealii: an unknown error" << std::endl;
+      }
+    return 1;
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **argv)
+{
+  try
+    {
+      ACF::run_command(ACF::parse_command_line({argv + 1, argv + argc}),
+                       std::cout);
+      return 0;
+    }
+  catch (...)
+    {
+      return report_current_exception();
+    }
+}

@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/body_operators.h>
+
+#include <deal.II/base/memory_consumption.h>
+
+#include <deal.II/dofs/dof_tools.h>
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_simplex_p.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <deal.II/lac/dynamic_sparsity_pattern.h>
+#include <deal.II/lac/sparsity_tools.h>
+
+#include <algorithm>
+
+namespace ACF
+{
+  namespace
+  {
+    FESystem<dim>
+    quadratic_element(const BodyMesh &mesh)
+    {
+      return mesh.is_simplex() ? FESystem<dim>(FE_SimplexP<dim>(2), dim) :
+                                 FESystem<dim>(FE_Q<dim>(2), dim);
+    }
+
+
+
+    // Couplings of the nodes, from the cells.
+    DynamicSparsityPattern
+    node_couplings(const BodyDiscretization &body)
+    {
+      DynamicSparsityPattern    pattern(body.n_nodes());
+      std::vector<unsigned int> nodes(body.scalar_element().n_dofs_per_cell());
+      for (const auto &cell : body.dof_handler().active_cell_iterators())
+        {
+          body.get_nodes(cell, nodes);
+          std::vector<unsigned int> sorted(nodes);
+          std::sort(sorted.begin(), sorted.end());
+          for (const unsigned int a : nodes)
+            pattern.add_entries(a, sorted.begin(), sorted.end(), true);
+        }
+      return pattern;
+    }
+
+
+
+    std::shared_ptr<const NodeGraph>
+    make_node_graph(const BodyDiscretization &body)
+    {
+      const DynamicSparsityPattern pattern = node_couplings(body);
+      const auto                   graph   = std::make_shared<NodeGraph>();
+      graph->row_start.reserve(body.n_nodes() + 1);
+      graph->column.reserve(pattern.n_nonzero_elements());
+      graph->row_start.push_back(0);
+      for (unsigned int a = 0; a < body.n_nodes(); ++a)
+        {
+          for (auto it = pattern.begin(a); it != pattern.end(a); ++it)
+            graph->column.push_back(it->column());
+          graph->row_start.push_back(graph->column.size());
+        }
+      return graph;
+    }
+
+
+
+    void
+    assemble_mass(const BodyDiscretization &body,
+                  const double              density,
+                  ScalarNodeMatrix         &mass_matrix)
+    {
+      FEValues<dim> values(body.mesh().mapping(),
+                           body.scalar_element(),
+                           body.mesh().cell_quadrature(4),
+                           update_values | update_JxW_values);
+      const unsigned int        n = values.dofs_per_cell;
+      std::vector<unsigned int> nodes(n);
+
+      for (const auto &cell : body.dof_handler().active_cell_iterators())
+        {
+          values.reinit(
+            typename Triangulation<dim>::active_cell_iterator(cell));
+          body.get_nodes(cell, nodes);
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+              {
+                double entry = 0;
+                for (const unsigned int q : values.quadrature_point_indices())
+                  entry += values.shape_value(i, q) * values.shape_value(j, q) *
+                           values.JxW(q);
+                mass_matrix.add(nodes[i], nodes[j], density * entry);
+              }
+        }
+    }
+
+
+
+    // A_ab = int lambda grad(a) x grad(b) + mu grad(b) x grad(a)
+    //            + mu grad(a) . grad(b) I
+    void
+    assemble_stiffness(const BodyDiscretization &body,
+                       const Material           &material,
+                       BlockNodeMatrix          &stiffness_matrix,
+                       NodalVector              &averaging_vectors,
+                       double                   &volume)
+    {
+      FEValues<dim> values(body.mesh().mapping(),
+                           body.scalar_element(),
+                           body.mesh().cell_quadrature(
+                             body.mesh().is_simplex() ? 2 : 4),
+                           update_gradients | update_JxW_values);
+      const unsigned int        n = values.dofs_per_cell;
+      std::vector<unsigned int> nodes(n);
+      const double              lambda = material.lambda();
+      const double              mu     = material.mu();
+
+      for (const auto &cell : body.dof_handler().active_cell_iterators())
+        {
+          values.reinit(
+            typename Triangulation<dim>::active_cell_iterator(cell));
+          body.get_nodes(cell, nodes);
+          for (const unsigned int q : values.quadrature_point_indices())
+            {
+              volume += values.JxW(q);
+              for (unsigned int i = 0; i < n; ++i)
+                for (unsigned int c = 0; c < dim; ++c)
+                  averaging_vectors[dim * nodes[i] + c] +=
+                    values.shape_grad(i, q)[c] * values.JxW(q);
+            }
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+              {
+                Matrix3 block;
+                for (const unsigned int q : values.quadrature_point_indices())
+                  {
+                    const Vector3 &grad_a = values.shape_grad(i, q);
+                    const Vector3 &grad_b = values.shape_grad(j, q);
+                    const double   dV     = values.JxW(q);
+                    const double   laplace = mu * (grad_a * grad_b) * dV;
+                    for (unsigned int c = 0; c < dim; ++c)
+                      {
+                        for (unsigned int d = 0; d < dim; ++d)
+                          block[c][d] += (lambda * grad_a[c] * grad_b[d] +
+                                          mu * grad_b[c] * grad_a[d]) *
+                                         dV;
+                        block[c][c] += laplace;
+                      }
+                  }
+                stiffness_matrix.add(nodes[i], nodes[j], block);
+              }
+        }
+      averaging_vectors /= volume;
+    }
+
+
+
+    // Centre of mass and inertia from the mass matrix: positions are
+    // represented exactly by the nodal values.
+    void
+    compute_rigid_inertia(BodyOperators &operators)
+    {
+      const NodalVector &X = operators.reference_positions;
+      for (unsigned int a = 0; a < operators.n_nodes; ++a)
+        {
+          operators.mass += operators.nodal_masses[a];
+          for (unsigned int i = 0; i < dim; ++i)
+            operators.centre[i] += operators.nodal_masses[a] * X[dim * a + i];
+        }
+      operators.centre /= operators.mass;
+
+      NodalVector arm(X), mass_times_arm(X.size());
+      for (unsigned int a = 0; a < operators.n_nodes; ++a)
+        for (unsigned int i = 0; i < dim; ++i)
+          arm[dim * a + i] -= operators.centre[i];
+      operators.mass_matrix.vmult(mass_times_arm, arm);
+
+      Matrix3 second_moment;
+      for (unsigned int a = 0; a < operators.n_nodes; ++a)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            second_moment[i][j] +=
+              arm[dim * a + i] * mass_times_arm[dim * a + j];
+      for (unsigned int i = 0; i < dim; ++i)
+        {
+          operators.inertia[i][i] = trace(second_moment);
+          for (unsigned int j = 0; j < dim; ++j)
+            operators.inertia[i][j] -= second_moment[i][j];
+        }
+    }
+
+
+
+    double
+    bounding_box_diagonal(const NodalVector &X)
+    {
+      Vector3 lower, upper;
+      for (unsigned int i = 0; i < dim; ++i)
+        {
+          lower[i] = upper[i] = X[i];
+          for (unsigned int k = i; k < X.size(); k += dim)
+            {
+              lower[i] = std::min(lower[i], X[k]);
+              upper[i] = std::max(upper[i], X[k]);
+            }
+        }
+      return (upper - lower).norm();
+    }
+  } // namespace
+
+
+
+  double
+  Material::lambda() const
+  {
+    return youngs_modulus * poissons_ratio /
+           ((1 + poissons_ratio) * (1 - 2 * poissons_ratio));
+  }
+
+
+
+  double
+  Material::mu() const
+  {
+    return youngs_modulus / (2 * (1 + poissons_ratio));
+  }
+
+
+
+  BodyDiscretization::BodyDiscretization(std::unique_ptr<const BodyMesh> mesh)
+    : body_mesh(std::move(mesh))
+    , element(quadratic_element(*body_mesh))
+    , handler(body_mesh->triangulation())
+  {
+    handler.distribute_dofs(element);
+    renumber_nodes();
+
+    positions.reinit(handler.n_dofs());
+    const auto               &points = scalar_element().get_unit_support_points();
+    std::vector<unsigned int> nodes(points.size());
+    for (const auto &cell : handler.active_cell_iterators())
+      {
+        get_nodes(cell, nodes);
+        for (unsigned int i = 0; i < points.size(); ++i)
+          {
+            const Point<dim> X =
+              body_mesh->mapping().transform_unit_to_real_cell(
+                typename Triangulation<dim>::active_cell_iterator(cell),
+                points[i]);
+            for (unsigned int c = 0; c < dim; ++c)
+              positions[dim * nodes[i] + c] = X[c];
+          }
+      }
+  }
+
+
+
+  void
+  BodyDiscretization::get_nodes(
+    const typename DoFHandler<dim>::active_cell_iterator &cell,
+    std::vector<unsigned int>                            &nodes) const
+  {
+    std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
+    cell->get_dof_indices(dofs);
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      nodes[i] = dofs[element.component_to_system_index(0, i)] / dim;
+  }
+
+
+
+  void
+  BodyDiscretization::renumber_nodes()
+  {
+#ifdef DEBUG
+    // deal.II numbers the components of a support point one after the other
+    std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
+    for (const auto &cell : handler.active_cell_iterators())
+      {
+        cell->get_dof_indices(dofs);
+        for (unsigned int i = 0; i < scalar_element().n_dofs_per_cell(); ++i)
+          for (unsigned int c = 0; c < dim; ++c)
+            Assert(dofs[element.component_to_system_index(c, i)] ==
+                     dofs[element.component_to_system_index(0, i)] + c,
+                   ExcInternalError());
+      }
+#endif
+
+    std::vector<DynamicSparsityPattern::size_type> order(n_nodes());
+    SparsityTools::reorder_Cuthill_McKee(node_couplings(*this), order);
+    std::vector<types::global_dof_index> new_dofs(handler.n_dofs());
+    for (unsigned int a = 0; a < n_nodes(); ++a)
+      for (unsigned int c = 0; c < dim; ++c)
+        new_dofs[dim * a + c] = dim * (n_nodes() - 1 - order[a]) + c;
+    handler.renumber_dofs(new_dofs);
+  }
+
+
+
+  BodyOperators::BodyOperators(const std::shared_ptr<const NodeGraph> &graph)
+    : n_nodes(graph->n_nodes())
+    , mass_matrix(graph)
+    , stiffness_matrix(graph)
+  {}
+
+
+
+  std::size_t
+  BodyOperators::memory_consumption() const
+  {
+    return mass_matrix.graph().memory_consumption() +
+           mass_matrix.memory_consumption() +
+           stiffness_matrix.memory_consumption() +
+           reference_positions.memory_consumption() +
+           averaging_vectors.memory_consumption() +
+           MemoryConsumption::memory_consumption(nodal_masses);
+  }
+
+
+
+  BodyOperators
+  assemble_body_operators(const BodyDiscretization &body,
+                          const Material           &material)
+  {
+    BodyOperators operators(make_node_graph(body));
+    operators.reference_positions = body.reference_positions();
+    operators.averaging_vectors.reinit(operators.n_unknowns());
+    assemble_mass(body, material.density, operators.mass_matrix);
+    assemble_stiffness(body,
+                       material,
+                       operators.stiffness_matrix,
+                       operators.averaging_vectors,
+                       operators.volume);
+    operators.nodal_masses = operators.mass_matrix.row_sums();
+    operators.length = bounding_box_diagonal(operators.reference_positions);
+    compute_rigid_inertia(operators);
+    return operators;
+  }
+} // namespace ACF

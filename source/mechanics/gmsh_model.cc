@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/gmsh_model.h>
+
+#include <gmsh.h>
+
+#include <algorithm>
+#include <unordered_map>
+#include <utility>
+
+namespace ACF
+{
+  namespace
+  {
+    /** What gmsh knows of an element type. */
+    struct ElementType
+    {
+      std::string name;
+      int dimension;
+      int order;
+      int n_nodes;
+      int n_corners;
+      std::vector<double> node_coordinates;
+    };
+
+    ElementType
+    element_type(const int type)
+    {
+      ElementType result;
+      gmsh::model::mesh::getElementProperties(type,
+                                              result.name,
+                                              result.dimension,
+                                              result.order,
+                                              result.n_nodes,
+                                              result.node_coordinates,
+                                              result.n_corners);
+      return result;
+    }
+
+    /** Collects vertices and elements of gmsh's current model. */
+    class ElementReader
+    {
+    public:
+      ElementReader(const double scale,
+                    const MeshSource &source,
+                    MeshData &data)
+        : source(source)
+        , data(data)
+      {
+        std::vector<std::size_t> tags;
+        std::vector<double> coordinates, parameters;
+        gmsh::model::mesh::getNodes(tags, coordinates, parameters);
+        for (std::size_t i = 0; i < tags.size(); ++i)
+          nodes[tags[i]] = scale * Point<dim>(coordinates[3 * i],
+                                              coordinates[3 * i + 1],
+                                              coordinates[3 * i + 2]);
+      }
+
+      /** Append cells or faces with their ids. */
+      template <int structdim>
+      void
+      read(const std::vector<ElementBlock> &blocks,
+           const std::map<int, unsigned int> &ids,
+           std::vector<CellData<structdim>> &elements,
+           std::vector<std::size_t> *const numbers)
+      {
+        for (const ElementBlock &block : blocks)
+        {
+          const ElementType type = element_type(block.type);
+          for (std::size_t e = 0; e < block.tags.size(); ++e)
+          {
+            const std::size_t *const tags = &block.nodes[e * type.n_nodes];
+            CellData<structdim> element(type.n_corners);
+            for (int c = 0; c < type.n_corners; ++c)
+              element.vertices[c] = vertex(tags[c], block.tags[e]);
+            if (structdim == dim)
+            {
+              if (type.order > 1)
+                check_straight(type, tags, block.tags[e]);
+              element.material_id = ids.at(block.entity);
+              // counter-clockwise -> lexicographic
+              if (type.n_corners == 8)
+              {
+                std::swap(element.vertices[2], element.vertices[3]);
+                std::swap(element.vertices[6], element.vertices[7]);
+              }
+            }
+            else
+              element.boundary_id = ids.at(block.entity);
+            elements.push_back(element);
+            if (numbers != nullptr)
+              numbers->push_back(block.tags[e]);
+          }
+        }
+      }
+
+    private:
+      const Point<dim> &
+      node(const std::size_t tag, const std::size_t element) const
+      {
+        const auto found = nodes.find(tag);
+        if (found == nodes.end())
+          throw source.error("element " + std::to_string(element) +
+                               " with node " + std::to_string(tag) +
+                               ", which does not exist",
+                             "nodes that the file defines");
+        return found->second;
+      }
+
+      unsigned int
+      vertex(const std::size_t tag, const std::size_t element)
+      {
+        const auto [entry, is_new] =
+          vertices.try_emplace(tag, data.vertices.size());
+        if (is_new)
+          data.vertices.push_back(node(tag, element));
+        return entry->second;
+      }
+
+      /** Compare nodes of higher order with the linear or trilinear map. */
+      void
+      check_straight(const ElementType &type,
+                     const std::size_t *const tags,
+                     const std::size_t element) const
+      {
+        constexpr double tolerance = 1e-5;
+        const double diameter =
+          node(tags[0], element)
+            .distance(node(tags[type.n_corners - 2], element));
+        for (int n = type.n_corners; n < type.n_nodes; ++n)
+        {
+          const double *const xi = &type.node_coordinates[dim * n];
+          Vector3 straight;
+          for (int c = 0; c < type.n_corners; ++c)
+          {
+            const double *const corner = &type.node_coordinates[dim * c];
+            double shape               = 1;
+            if (type.n_corners == 4)
+              shape = (c == 0 ? 1 - xi[0] - xi[1] - xi[2] : xi[c - 1]);
+            else
+              for (unsigned int d = 0; d < dim; ++d)
+                shape *= 0.5 * (1 + corner[d] * xi[d]);
+            straight += shape * Vector3(node(tags[c], element));
+          }
+          const Point<dim> &position = node(tags[n], element);
+          if ((Vector3(position) - straight).norm() > tolerance * diameter)
+            throw source.error(
+              "the curved element " + std::to_string(element) +
+                " of second or higher order, node " + std::to_string(tags[n]) +
+                " at " + describe_point(position) +
+                " is not on the straight edge",
+              "straight cells, curved geometry is not supported yet: save "
+              "the mesh with Mesh.ElementOrder = 1");
+        }
+      }
+
+      const MeshSource &source;
+      MeshData &data;
+      std::unordered_map<std::size_t, Point<dim>> nodes;
+      std::unordered_map<std::size_t, unsigned int> vertices;
+    };
+  } // namespace
+
+  GmshSession::GmshSession()
+  {
+    // without the user's option files, so that a model always gives the same
+    // mesh
+    gmsh::initialize(0, nullptr, false);
+    gmsh::option::setNumber("General.Terminal", 0);
+  }
+
+  GmshSession::~GmshSession()
+  {
+    gmsh::finalize();
+  }
+
+  EntityNames
+  physical_groups(const int dimension, const MeshSource &source)
+  {
+    const std::string kind = (dimension == dim ? "volume" : "surface");
+    EntityNames names;
+    gmsh::vectorpair groups;
+    gmsh::model::getPhysicalGroups(groups, dimension);
+    int largest_tag = 0;
+    for (const auto &group : groups)
+    {
+      const int tag = group.second;
+      std::string name;
+      std::vector<int> entities;
+      gmsh::model::getPhysicalName(dimension, tag, name);
+      gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
+      if (name.empty())
+        name = kind + " " + std::to_string(tag);
+      EntityNames members;
+      for (const int entity : entities)
+      {
+        names[entity].insert(name);
+        members[entity] = {};
+      }
+      if (elements_of(dimension, members).empty())
+        throw source.error("the physical group '" + name + "' (" + kind + " " +
+                             std::to_string(tag) + ") without cells",
+                           "groups that are not empty");
+      largest_tag = std::max(largest_tag, tag);
+    }
+
+    // gmsh does not list groups that have a name only; tags are usually
+    // counted upwards, so that looking a little further finds them
+    constexpr int search_range = 100;
+    for (int tag = 1; tag <= largest_tag + search_range; ++tag)
+      if (std::find(groups.begin(),
+                    groups.end(),
+                    std::make_pair(dimension, tag)) == groups.end())
+      {
+        std::string name;
+        gmsh::model::getPhysicalName(dimension, tag, name);
+        if (!name.empty())
+          throw source.error("the physical group '" + name + "' (" + kind +
+                               " " + std::to_string(tag) + ") without cells",
+                             "groups that are not empty");
+      }
+    return names;
+  }
+
+  EntityNames
+  geometric_entities(const int dimension)
+  {
+    EntityNames names;
+    gmsh::vectorpair entities;
+    gmsh::model::getEntities(entities, dimension);
+    for (const auto &entity : entities)
+      names[entity.second] = {(dimension == dim ? "volume " : "surface ") +
+                              std::to_string(entity.second)};
+    return names;
+  }
+
+  std::vector<ElementBlock>
+  elements_of(const int dimension, const EntityNames &names)
+  {
+    std::vector<ElementBlock> result;
+    for (const auto &entity : names)
+    {
+      std::vector<int> types;
+      std::vector<std::vector<std::size_t>> tags, nodes;
+      gmsh::model::mesh::getElements(
+        types, tags, nodes, dimension, entity.first);
+      for (std::size_t i = 0; i < types.size(); ++i)
+        result.push_back(
+          {entity.first, types[i], std::move(tags[i]), std::move(nodes[i])});
+    }
+    return result;
+  }
+
+  std::string
+  element_family(const int type)
+  {
+    static const std::map<std::string, std::string> plurals = {
+      {"Tetrahedron", "tetrahedra"},
+      {"Hexahedron", "hexahedra"},
+      {"Prism", "wedges"},
+      {"Pyramid", "pyramids"},
+      {"Triangle", "triangles"},
+      {"Quadrilateral", "quadrilaterals"}};
+    const std::string name = element_type(type).name;
+    const auto plural      = plurals.find(name.substr(0, name.find(' ')));
+    return plural != plurals.end() ? plural->second : name + " elements";
+  }
+
+  std::string
+  describe_elements(const std::vector<ElementBlock> &blocks)
+  {
+    std::map<std::string, std::size_t> counts;
+    for (const ElementBlock &block : blocks)
+      counts[element_family(block.type)] += block.tags.size();
+    std::string result;
+    for (const auto &[name, count] : counts)
+      result +=
+        (result.empty() ? "" : " and ") + std::to_string(count) + " " + name;
+    return result.empty() ? "none" : result;
+  }
+
+  void
+  remove_repetitions(std::vector<ElementBlock> &blocks,
+                     const EntityNames &names,
+                     const MeshSource &source)
+  {
+    for (ElementBlock &block : blocks)
+    {
+      const std::size_t n_groups = names.at(block.entity).size();
+      if (n_groups <= 1)
+        continue;
+      const std::size_t n_nodes = block.nodes.size() / block.tags.size();
+      ElementBlock unique{block.entity, block.type, {}, {}};
+      std::map<std::vector<std::size_t>, std::size_t> copies;
+      for (std::size_t e = 0; e < block.tags.size(); ++e)
+      {
+        const auto begin = block.nodes.begin() + e * n_nodes;
+        const std::vector<std::size_t> nodes(begin, begin + n_nodes);
+        if (++copies[nodes] > 1)
+          continue;
+        unique.tags.push_back(block.tags[e]);
+        unique.nodes.insert(unique.nodes.end(), nodes.begin(), nodes.end());
+      }
+      for (const auto &copy : copies)
+        if (copy.second != n_groups)
+        {
+          std::string groups;
+          for (const std::string &name : names.at(block.entity))
+            groups += (groups.empty() ? "'" : ", '") + name + "'";
+          throw source.error(
+            "the groups " + groups + " share the elementary entity " +
+              std::to_string(block.entity) + " but not all elements",
+            "in format 2.2, one set of groups per elementary entity; or "
+            "format 4.1");
+        }
+      block = std::move(unique);
+    }
+  }
+
+  void
+  read_elements(const std::vector<ElementBlock> &cells,
+                const std::map<int, unsigned int> &cell_ids,
+                const std::vector<ElementBlock> &faces,
+                const std::map<int, unsigned int> &face_ids,
+                const double scale,
+                const MeshSource &source,
+                MeshData &data)
+  {
+    ElementReader reader(scale, source, data);
+    reader.read(cells, cell_ids, data.cells, &data.cell_numbers);
+    reader.read(faces, face_ids, data.faces, nullptr);
+  }
+} // namespace ACF

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/reduced_strain.h>
+
+namespace ACF
+{
+  namespace
+  {
+    Vector3
+    node_value(const NodalVector &v, const unsigned int a)
+    {
+      Vector3 value;
+      for (unsigned int i = 0; i < dim; ++i)
+        value[i] = v[dim * a + i];
+      return value;
+    }
+
+
+
+    void
+    set_node_value(NodalVector &v, const unsigned int a, const Vector3 &value)
+    {
+      for (unsigned int i = 0; i < dim; ++i)
+        v[dim * a + i] = value[i];
+    }
+  } // namespace
+
+
+
+  Matrix3
+  mean_deformation_gradient(const BodyOperators &body,
+                            const NodalVector   &positions)
+  {
+    AssertDimension(positions.size(), body.n_unknowns());
+    Matrix3 F;
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          F[i][j] +=
+            positions[dim * a + i] * body.averaging_vectors[dim * a + j];
+    return F;
+  }
+
+
+
+  Vector3
+  mass_mean(const BodyOperators &body, const NodalVector &field)
+  {
+    AssertDimension(field.size(), body.n_unknowns());
+    Vector3 mean;
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      for (unsigned int i = 0; i < dim; ++i)
+        mean[i] += body.nodal_masses[a] * field[dim * a + i];
+    return mean / body.mass;
+  }
+
+
+
+  void
+  co_rotated_displacement(const BodyOperators &body,
+                          const NodalVector   &positions,
+                          const Matrix3       &rotation,
+                          NodalVector         &displacement)
+  {
+    AssertDimension(displacement.size(), body.n_unknowns());
+    const Vector3 centre  = mass_mean(body, positions);
+    const Matrix3 inverse = transpose(rotation);
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      set_node_value(displacement,
+                     a,
+                     inverse * (node_value(positions, a) - centre) -
+                       (node_value(body.reference_positions, a) -
+                        body.centre));
+  }
+
+
+
+  std::optional<double>
+  reduced_strain_force(const BodyOperators  &body,
+                       const RotationMeasure measure,
+                       const NodalVector    &positions,
+                       NodalVector          &force,
+                       NodalVector          &scratch)
+  {
+    const std::optional<BodyRotation> frame =
+      body_rotation(mean_deformation_gradient(body, positions), measure);
+    if (!frame)
+      return {};
+
+    NodalVector &q = scratch;
+    co_rotated_displacement(body, positions, frame->rotation, q);
+    body.stiffness_matrix.vmult(force, q);
+
+    double  energy = 0;
+    Vector3 c;
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      {
+        const Vector3 q_a = node_value(q, a);
+        const Vector3 k_a = node_value(force, a);
+        energy += 0.5 * (q_a * k_a);
+        c += cross_product_3d(q_a, k_a);
+      }
+
+    const Matrix3 P = frame->contract(c);
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      set_node_value(force,
+                     a,
+                     frame->rotation *
+                       (node_value(force, a) -
+                        P * node_value(body.averaging_vectors, a)));
+    return energy;
+  }
+} // namespace ACF

@@ -1,0 +1,330 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/console.h>
+#include <acf/base/exceptions.h>
+
+#include <acf/io/probes.h>
+#include <acf/io/vtu_output.h>
+
+#include <acf/model.h>
+#include <acf/simulation.h>
+#include <acf/version.h>
+
+#include <deal.II/base/multithread_info.h>
+
+#include <mpi.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+#include <ostream>
+
+extern "C" void
+openblas_set_num_threads(int n_threads);
+
+namespace ACF
+{
+  namespace
+  {
+    // MUMPS needs MPI, even in one process. Only runs start it.
+    class MpiSession
+    {
+    public:
+      MpiSession()
+      {
+        int initialized = 0;
+        MPI_Initialized(&initialized);
+        owner = (initialized == 0);
+        if (owner)
+          {
+            int provided = 0;
+            MPI_Init_thread(nullptr,
+                            nullptr,
+                            MPI_THREAD_SERIALIZED,
+                            &provided);
+          }
+      }
+
+      ~MpiSession()
+      {
+        if (owner)
+          MPI_Finalize();
+      }
+
+      MpiSession(const MpiSession &) = delete;
+      MpiSession &
+      operator=(const MpiSession &) = delete;
+
+    private:
+      bool owner;
+    };
+
+
+
+    // Complete or not at all under its final name.
+    void
+    write_file(const std::filesystem::path &file, const std::string &text)
+    {
+      const std::filesystem::path temporary = file.string() + ".tmp";
+      std::ofstream               stream(temporary);
+      stream << text << std::flush;
+      stream.close();
+      std::error_code error;
+      if (stream)
+        std::filesystem::rename(temporary, file, error);
+      if (!stream || error)
+        throw SimulationError("Cannot write the file " + file.string() + ".");
+    }
+
+
+
+    void
+    make_directory(const std::filesystem::path &directory)
+    {
+      std::error_code error;
+      std::filesystem::create_directories(directory, error);
+      if (error || !std::filesystem::is_directory(directory))
+        throw SimulationError("Cannot make the output directory " +
+                              directory.string() + ": " + error.message() +
+                              ".");
+    }
+
+
+
+    std::string
+    format_vector(const Vector3 &v)
+    {
+      return "(" + format_number(v[0]) + ", " + format_number(v[1]) + ", " +
+             format_number(v[2]) + ")";
+    }
+
+
+
+    void
+    describe_bodies(const MultibodySystem &system, std::ostream &stream)
+    {
+      for (const Body &body : system.bodies())
+        {
+          const BodyOperators &operators = body.operators();
+          const auto &mesh = body.discretization().mesh();
+          stream << "Body '" << body.name() << "': "
+                 << mesh.triangulation().n_active_cells() << " quadratic "
+                 << (mesh.is_simplex() ? "tetrahedra" : "hexahedra") << ", "
+                 << operators.n_unknowns() << " unknowns, volume "
+                 << format_number(operators.volume) << " m^3, mass "
+                 << format_number(operators.mass)
+                 << " kg, centre of mass in the mesh "
+                 << format_vector(operators.centre) << " m,\n"
+                 << "  inertia about it xx, yy, zz "
+                 << format_vector(Vector3({operators.inertia[0][0],
+                                           operators.inertia[1][1],
+                                           operators.inertia[2][2]}))
+                 << " kg m^2, yz, zx, xy "
+                 << format_vector(Vector3({operators.inertia[1][2],
+                                           operators.inertia[2][0],
+                                           operators.inertia[0][1]}))
+                 << " kg m^2\n";
+        }
+      if (system.n_constraints() > 0)
+        stream << "Joints: " << system.joints().size() << " with "
+               << system.n_constraints() << " constraints\n";
+      stream << std::flush;
+    }
+
+
+
+    void
+    describe_run(const Statistics &statistics, std::ostream &stream)
+    {
+      const auto time = [&](const std::string &phase) {
+        const auto it = statistics.wall_times.find(phase);
+        return it == statistics.wall_times.end() ? 0. : it->second;
+      };
+      stream << statistics.steps << " steps ("
+             << statistics.rejected_steps << " rejected) with "
+             << statistics.newton_iterations << " iterations, "
+             << statistics.real_factorizations +
+                  statistics.complex_factorizations
+             << " factorisations ("
+             << format_bytes(statistics.factor_bytes) << "), "
+             << statistics.real_solves + statistics.complex_solves
+             << " solves\n"
+             << "Time: assembly " << format_duration(time("assembly"))
+             << ", factorisation " << format_duration(time("factorisation"))
+             << ", time steps "
+             << format_duration(time("time steps") - time("factorisation"))
+             << " (solves " << format_duration(time("solves"))
+             << "), output " << format_duration(time("output"))
+             << "; peak memory " << format_bytes(peak_memory()) << std::endl;
+    }
+  } // namespace
+
+
+
+  std::string
+  statistics_json(const Statistics      &statistics,
+                  const MultibodySystem &system,
+                  const bool             finished)
+  {
+    nlohmann::ordered_json json;
+    json["version"]  = ACF_VERSION;
+    json["finished"] = finished;
+    json["steps"]    = statistics.steps;
+    json["rejected steps"]        = statistics.rejected_steps;
+    json["halvings"]              = statistics.halvings;
+    json["newton iterations"]     = statistics.newton_iterations;
+    json["newton iterations max"] = statistics.max_newton_iterations;
+    json["factorisations"]        = {
+      {"real", statistics.real_factorizations},
+      {"complex", statistics.complex_factorizations}};
+    json["solves"] = {{"real", statistics.real_solves},
+                      {"complex", statistics.complex_solves},
+                      {"setup", statistics.setup_solves}};
+    json["force evaluations"]  = statistics.force_evaluations;
+    json["schur complements"]  = statistics.schur_complements;
+    json["stress evaluations"] = statistics.stress_evaluations;
+    json["vtu files"]          = statistics.vtu_files;
+    json["probe rows"]         = statistics.probe_rows;
+    json["constraints"]        = system.n_constraints();
+    for (const Body &body : system.bodies())
+      json["bodies"][body.name()] = {
+        {"cells", body.discretization().mesh().triangulation().n_active_cells()},
+        {"unknowns", body.operators().n_unknowns()},
+        {"mass [kg]", body.operators().mass},
+        {"volume [m^3]", body.operators().volume},
+        {"operator memory [B]", body.operators().memory_consumption()}};
+    json["factor entries"]             = statistics.factor_entries;
+    json["factor memory [B]"]          = statistics.factor_bytes;
+    json["joint column memory [B]"]    = statistics.joint_column_bytes;
+    json["factor backward error"]      = statistics.factor_backward_error;
+    json["threads"]                    = MultithreadInfo::n_threads();
+    json["peak memory [B]"]            = peak_memory();
+    for (const auto &[phase, seconds] : statistics.wall_times)
+      json["wall time [s]"][phase] = seconds;
+    return json.dump(2) + "\n";
+  }
+
+
+
+  void
+  run_model(const Model                 &model,
+            const std::filesystem::path &output_directory,
+            std::ostream                &stream,
+            const bool                   quiet)
+  {
+    Statistics                             statistics;
+    std::unique_ptr<const MultibodySystem> system;
+    {
+      const PhaseTimer timer(statistics, "assembly");
+      system = std::make_unique<const MultibodySystem>(model.bodies,
+                                                       model.joints,
+                                                       model.loads,
+                                                       model.directory);
+    }
+    if (!quiet)
+      describe_bodies(*system, stream);
+
+    make_directory(output_directory);
+    std::vector<std::unique_ptr<Observer>> observers;
+    if (!model.probes.empty())
+      observers.push_back(
+        std::make_unique<ProbeOutput>(*system,
+                                      model.probes,
+                                      model.output.probe_interval,
+                                      output_directory,
+                                      statistics));
+    if (model.output.vtu.interval > 0)
+      observers.push_back(std::make_unique<VtuOutput>(*system,
+                                                      output_directory,
+                                                      model.output.vtu,
+                                                      statistics));
+    write_file(output_directory / "used_parameters.prm",
+               model.used_parameters);
+
+    const MpiSession mpi;
+    const auto       write_statistics = [&](const bool finished) {
+      write_file(output_directory / "statistics.json",
+                 statistics_json(statistics, *system, finished));
+    };
+    try
+      {
+        std::vector<Observer *> pointers;
+        for (const auto &observer : observers)
+          pointers.push_back(observer.get());
+        Progress progress(stream,
+                          !quiet && standard_output_is_terminal(),
+                          model.time.end_time);
+        run_time_loop(*system, model.time, pointers, progress, statistics);
+      }
+    catch (const SimulationError &)
+      {
+        write_statistics(false);
+        throw;
+      }
+    write_statistics(true);
+    if (!quiet)
+      {
+        describe_run(statistics, stream);
+        stream << "Results are in " << output_directory.string() << std::endl;
+      }
+  }
+
+
+
+  void
+  run_command(const CommandLine &command_line, std::ostream &stream)
+  {
+    switch (command_line.action)
+      {
+        case CommandLine::Action::help:
+          stream << help_text();
+          return;
+        case CommandLine::Action::version:
+          stream << "acf-dealii " << ACF_VERSION << std::endl;
+          return;
+        case CommandLine::Action::print_parameters:
+          stream << default_model_file();
+          return;
+        case CommandLine::Action::validate:
+        case CommandLine::Action::run:
+          break;
+      }
+
+    if (command_line.n_threads > 0)
+      MultithreadInfo::set_thread_limit(command_line.n_threads);
+    openblas_set_num_threads(MultithreadInfo::n_threads());
+
+    const ParameterFile file(command_line.model, command_line.overrides);
+    const Model         model = read_model(file);
+    const std::filesystem::path output_directory =
+      command_line.output_directory.value_or(model.output.directory);
+    try
+      {
+        if (command_line.action == CommandLine::Action::run)
+          {
+            if (!command_line.quiet && !model.title.empty())
+              stream << model.title << std::endl;
+            run_model(model, output_directory, stream, command_line.quiet);
+          }
+        else
+          {
+            const MultibodySystem system(model.bodies,
+                                         model.joints,
+                                         model.loads,
+                                         model.directory);
+            for (const ProbeParameters &probe : model.probes)
+              make_probe(probe, system);
+            if (!command_line.quiet)
+              {
+                describe_bodies(system, stream);
+                stream << command_line.model.string() << " is valid."
+                       << std::endl;
+              }
+          }
+      }
+    catch (const InputError &error)
+      {
+        throw file.locate(error);
+      }
+  }
+} // namespace ACF

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+
+#include <acf/solvers/factorization_cache.h>
+
+#include <algorithm>
+
+namespace ACF
+{
+  template <typename Number>
+  JointedFactorization<Number>::JointedFactorization(const Body  &body,
+                                                     const Number shift)
+    : factor(body.operators(), shift)
+    , functionals(body.joint_functionals())
+    , n_unknowns(body.operators().n_unknowns())
+    , columns(dim * functionals.size() * n_unknowns)
+  {
+    if (functionals.empty())
+      return;
+    for (unsigned int p = 0; p < functionals.size(); ++p)
+      for (unsigned int k = 0; k < functionals[p].nodes.size(); ++k)
+        for (unsigned int j = 0; j < dim; ++j)
+          columns[(dim * p + j) * n_unknowns + dim * functionals[p].nodes[k] +
+                  j] = functionals[p].weights[k];
+    factor.solve(columns.data(), dim * functionals.size());
+
+    joint_compliance.resize(dim * functionals.size(), dim * functionals.size());
+    std::vector<Number> column(n_unknowns);
+    for (unsigned int q = 0; q < joint_compliance.cols(); ++q)
+      {
+        std::copy_n(columns.begin() + q * n_unknowns,
+                    n_unknowns,
+                    column.begin());
+        joint_compliance.col(q) = functional_values(column);
+      }
+  }
+
+
+
+  template <typename Number>
+  typename JointedFactorization<Number>::Vector
+  JointedFactorization<Number>::functional_values(
+    const std::vector<Number> &x) const
+  {
+    Vector values = Vector::Zero(dim * functionals.size());
+    for (unsigned int p = 0; p < functionals.size(); ++p)
+      for (unsigned int k = 0; k < functionals[p].nodes.size(); ++k)
+        for (unsigned int i = 0; i < dim; ++i)
+          values(dim * p + i) +=
+            functionals[p].weights[k] * x[dim * functionals[p].nodes[k] + i];
+    return values;
+  }
+
+
+
+  template <typename Number>
+  void
+  JointedFactorization<Number>::subtract_columns(const Vector        &F,
+                                                 std::vector<Number> &x) const
+  {
+    using Map = Eigen::Map<const Matrix>;
+    Eigen::Map<Vector>(x.data(), n_unknowns).noalias() -=
+      Map(columns.data(), n_unknowns, F.size()) * F;
+  }
+
+
+
+  FactorizationCache::FactorizationCache(Statistics &statistics)
+    : statistics(statistics)
+  {}
+
+
+
+  template <typename Number>
+  JointedFactorization<Number> &
+  FactorizationCache::find_or_factorize(
+    std::map<Key, std::unique_ptr<JointedFactorization<Number>>> &factors,
+    const Body                                                   &body,
+    const Number                                                  shift,
+    unsigned long                                                &counter)
+  {
+    auto &entry = factors[Key(&body, std::real(shift), std::imag(shift))];
+    if (!entry)
+      {
+        const PhaseTimer timer(statistics, "factorisation");
+        try
+          {
+            entry = std::make_unique<JointedFactorization<Number>>(body, shift);
+          }
+        catch (const SimulationError &error)
+          {
+            throw SimulationError("Body '" + body.name() +
+                                  "': " + error.what());
+          }
+        ++counter;
+        const FactorizationStatistics &cost =
+          entry->factorization().statistics();
+        statistics.setup_solves += 1 + dim * body.joint_functionals().size();
+        statistics.factor_entries += cost.n_entries;
+        statistics.factor_bytes += cost.n_bytes;
+        statistics.joint_column_bytes += entry->column_bytes();
+        statistics.factor_backward_error =
+          std::max(statistics.factor_backward_error, cost.backward_error);
+      }
+    return *entry;
+  }
+
+
+
+  JointedFactorization<double> &
+  FactorizationCache::get(const Body &body, const double shift)
+  {
+    return find_or_factorize(real_factors,
+                             body,
+                             shift,
+                             statistics.real_factorizations);
+  }
+
+
+
+  JointedFactorization<std::complex<double>> &
+  FactorizationCache::get(const Body &body, const std::complex<double> shift)
+  {
+    return find_or_factorize(complex_factors,
+                             body,
+                             shift,
+                             statistics.complex_factorizations);
+  }
+
+
+
+  template class JointedFactorization<double>;
+  template class JointedFactorization<std::complex<double>>;
+} // namespace ACF

@@ -1,0 +1,392 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+
+#include <acf/mechanics/reduced_strain.h>
+
+#include <acf/time/radau_stepper.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ACF
+{
+  void
+  TimeParameters::add_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("Stages",
+                      n_stages,
+                      "Stages s of the Radau IIA method; positions converge "
+                      "with order 2s-1, velocities with s, reactions with s-1. "
+                      "Units: none.",
+                      Patterns::Integer(2, 3));
+    prm.add_parameter("End time",
+                      end_time,
+                      "Time at which the simulation ends; it starts at zero; "
+                      "required. Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter("Step size",
+                      step_size,
+                      "Size of the time steps; required. Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter(
+      "Newton tolerance",
+      newton_tolerance,
+      "Bound on the predicted error of the positions that the iteration of a "
+      "step leaves, relative to the length of a body. Units: none.",
+      Patterns::Double(1e-14, 1e-2));
+    prm.add_parameter("Maximal Newton iterations",
+                      max_newton_iterations,
+                      "Iterations after which a step is given up and halved. "
+                      "Units: none.",
+                      Patterns::Integer(2, 1000));
+    prm.add_parameter("Maximal halvings",
+                      max_halvings,
+                      "How often a step that does not converge is halved "
+                      "before the simulation fails. Units: none.",
+                      Patterns::Integer(0, 30));
+    prm.declare_entry(
+      "Stage matrices",
+      "diagonalized",
+      Patterns::Selection("diagonalized|one-step"),
+      "Matrices of the Newton iteration: the exact ones of the stages, "
+      "diagonalised (one complex factorisation per conjugate pair), or for "
+      "comparison real one-step matrices in the manner of the paper, which "
+      "need more iterations. Units: none.");
+    prm.add_action("Stage matrices", [this](const std::string &value) {
+      one_step_matrices = (value == "one-step");
+    });
+  }
+
+
+
+  void
+  TimeParameters::check() const
+  {
+    const auto require_positive = [](const std::string &entry,
+                                     const double       value) {
+      if (!(value > 0))
+        throw InputError("Time integration",
+                         entry,
+                         "nothing or zero",
+                         "a positive number");
+    };
+    require_positive("End time", end_time);
+    require_positive("Step size", step_size);
+    if (step_size > end_time)
+      throw InputError("Time integration",
+                       "Step size",
+                       "a step larger than the End time",
+                       "a positive number not larger than the End time");
+  }
+
+
+
+  RadauStepper::RadauStepper(const MultibodySystem &system,
+                             const TimeParameters  &parameters,
+                             Statistics            &statistics)
+    : system(system)
+    , parameters(parameters)
+    , statistics(statistics)
+    , tableau(radau_iia(parameters.n_stages))
+    , A_inverse(tableau.A.inverse())
+    , A_inverse_squared(A_inverse * A_inverse)
+    , cache(statistics)
+  {
+    if (parameters.one_step_matrices)
+      stage_solver = std::make_unique<OneStepStageSolver>(system,
+                                                          tableau,
+                                                          cache,
+                                                          statistics);
+    else
+      stage_solver = std::make_unique<DiagonalizedStageSolver>(system,
+                                                               tableau,
+                                                               cache,
+                                                               statistics);
+    SystemVector zero;
+    for (const Body &body : system.bodies())
+      zero.emplace_back(body.operators().n_unknowns());
+    stages.assign(tableau.n_stages(), zero);
+    stage_multipliers.assign(tableau.n_stages(),
+                             Eigen::VectorXd::Zero(system.n_constraints()));
+  }
+
+
+
+  void
+  RadauStepper::predict(const SystemState &state, const double step_size)
+  {
+    // The collocation polynomial of the accepted step beyond its end, minus
+    // u_n + c_i tau v_n; before the first step a motion without acceleration.
+    const double ratio =
+      accepted_step_size > 0 ? step_size / accepted_step_size : 0;
+    const unsigned int last = tableau.n_stages() - 1;
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      {
+        const StageShape shape = stage_shape(tableau, 1 + tableau.c(i) * ratio);
+        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+          {
+            stages[i][b] = 0;
+            if (accepted_step_size > 0)
+              for (unsigned int j = 0; j <= last; ++j)
+                stages[i][b].add(shape.values[j] -
+                                   (j == last ? 1. : 0.) -
+                                   tableau.c(i) * ratio * A_inverse(last, j),
+                                 accepted_stages[j][b]);
+          }
+        stage_multipliers[i] = state.multipliers;
+      }
+  }
+
+
+
+  NodalVector
+  RadauStepper::stage_position(const SystemState &state,
+                               const unsigned int stage,
+                               const unsigned int body) const
+  {
+    NodalVector x(state.positions[body]);
+    x.add(tableau.c(stage) * tried_step_size,
+          state.velocities[body],
+          1.,
+          stages[stage][body]);
+    return x;
+  }
+
+
+
+  std::vector<Matrix3>
+  RadauStepper::predicted_rotations(const SystemState &state) const
+  {
+    std::vector<Matrix3> rotations;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        const Body &body = system.bodies()[b];
+        Matrix3     F;
+        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+          F += mean_deformation_gradient(body.operators(),
+                                         stage_position(state, i, b)) /
+               tableau.n_stages();
+        std::optional<BodyRotation> frame =
+          body_rotation(F, body.rotation_measure());
+        if (!frame)
+          frame = body_rotation(mean_deformation_gradient(body.operators(),
+                                                          state.positions[b]),
+                                body.rotation_measure());
+        if (!frame)
+          throw SimulationError("Body '" + body.name() +
+                                "' is turned inside out at time " +
+                                std::to_string(state.time) +
+                                " s: its mean deformation gradient has a "
+                                "determinant that is not positive.");
+        rotations.push_back(frame->rotation);
+      }
+    return rotations;
+  }
+
+
+
+  bool
+  RadauStepper::assemble_residual(const SystemState &state,
+                                  StageVector       &residual,
+                                  StageConstraints  &constraint_residual,
+                                  std::string       &failure)
+  {
+    const double inverse_square = 1 / (tried_step_size * tried_step_size);
+    SystemVector positions(system.bodies().size());
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      {
+        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+          {
+            const Body          &body      = system.bodies()[b];
+            const BodyOperators &operators = body.operators();
+            NodalVector          work(operators.n_unknowns());
+
+            positions[b] = stage_position(state, i, b);
+            ++statistics.force_evaluations;
+            if (!reduced_strain_force(operators,
+                                      body.rotation_measure(),
+                                      positions[b],
+                                      residual[i][b],
+                                      work))
+              {
+                failure = "body '" + body.name() +
+                          "' is turned inside out (the determinant of its "
+                          "mean deformation gradient is not positive)";
+                return false;
+              }
+
+            NodalVector acceleration(operators.n_unknowns());
+            for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+              acceleration.add(inverse_square * A_inverse_squared(i, j),
+                               stages[j][b]);
+            operators.mass_matrix.vmult(work, acceleration);
+            residual[i][b] += work;
+            residual[i][b] *= -1;
+            system.add_external_and_joint_forces(b,
+                                                 stage_multipliers[i],
+                                                 residual[i][b]);
+          }
+        constraint_residual[i] = -system.constraint_residual(positions);
+      }
+    return true;
+  }
+
+
+
+  double
+  RadauStepper::increment_norm(const StageVector &increment) const
+  {
+    double norm = 0;
+    for (const SystemVector &stage : increment)
+      for (unsigned int b = 0; b < stage.size(); ++b)
+        {
+          const BodyOperators &operators = system.bodies()[b].operators();
+          const double relative = stage[b].l2_norm() /
+                                  std::sqrt(1. * operators.n_nodes) /
+                                  operators.length;
+          if (!(relative <= norm)) // also if it is not a number
+            norm = relative;
+        }
+    return norm;
+  }
+
+
+
+  StepReport
+  RadauStepper::try_step(const SystemState &state, const double step_size)
+  {
+    tried_step_size = step_size;
+    predict(state, step_size);
+    stage_solver->prepare(step_size, predicted_rotations(state));
+
+    StepReport       report;
+    StageVector      increment(stages);
+    StageConstraints constraint_increment(stage_multipliers);
+    double           factor        = std::pow(convergence_factor, 0.8);
+    double           previous_norm = 0;
+    while (report.iterations < parameters.max_newton_iterations)
+      {
+        if (!assemble_residual(
+              state, increment, constraint_increment, report.failure))
+          return report;
+        stage_solver->solve(increment, constraint_increment);
+        ++report.iterations;
+        ++statistics.newton_iterations;
+        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+          {
+            for (unsigned int b = 0; b < system.bodies().size(); ++b)
+              stages[i][b] += increment[i][b];
+            stage_multipliers[i] += constraint_increment[i];
+          }
+
+        const double norm = increment_norm(increment);
+        if (!std::isfinite(norm))
+          {
+            report.failure = "the iteration produced numbers that are not "
+                             "finite";
+            return report;
+          }
+        if (report.iterations > 1)
+          {
+            report.contraction = norm / previous_norm;
+            if (report.contraction >= 0.99)
+              {
+                report.failure = "the iteration diverges";
+                return report;
+              }
+            factor = report.contraction / (1 - report.contraction);
+
+            const double predicted =
+              factor * norm *
+              std::pow(report.contraction,
+                       parameters.max_newton_iterations - report.iterations);
+            if (predicted > parameters.newton_tolerance)
+              {
+                report.failure = "the iteration contracts too slowly";
+                return report;
+              }
+          }
+        previous_norm         = norm;
+        report.error_estimate = factor * norm;
+        if (report.error_estimate <= parameters.newton_tolerance)
+          {
+            convergence_factor =
+              std::max(factor, std::numeric_limits<double>::epsilon());
+            report.converged = true;
+            return report;
+          }
+      }
+    report.failure = "the iteration did not reach its tolerance";
+    return report;
+  }
+
+
+
+  void
+  RadauStepper::accept(SystemState &state)
+  {
+    step_start           = state;
+    accepted_step_size   = tried_step_size;
+    accepted_stages      = stages;
+    accepted_multipliers = stage_multipliers;
+
+    const unsigned int last = tableau.n_stages() - 1;
+    state.time += accepted_step_size;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        state.positions[b] = stage_position(step_start, last, b);
+        for (unsigned int j = 0; j <= last; ++j)
+          state.velocities[b].add(A_inverse(last, j) / accepted_step_size,
+                                  stages[j][b]);
+      }
+    state.multipliers = stage_multipliers[last];
+  }
+
+
+
+  SystemState
+  RadauStepper::interpolate(const double time) const
+  {
+    const double       tau = accepted_step_size;
+    const double       c   = (time - step_start.time) / tau;
+    const StageShape   shape = stage_shape(tableau, c);
+    const unsigned int s     = tableau.n_stages();
+
+    // Lagrange polynomials of the stages, for the multipliers, and of the
+    // stages and the start, for the velocities
+    Eigen::VectorXd multiplier_shape(s), velocity_shape(s);
+    for (unsigned int i = 0; i < s; ++i)
+      {
+        multiplier_shape(i) = 1;
+        for (unsigned int j = 0; j < s; ++j)
+          if (j != i)
+            multiplier_shape(i) *=
+              (c - tableau.c(j)) / (tableau.c(i) - tableau.c(j));
+        velocity_shape(i) = multiplier_shape(i) * c / tableau.c(i);
+      }
+    const Eigen::VectorXd velocity_of_stages =
+      A_inverse.transpose() * velocity_shape / tau;
+
+    SystemState state(step_start);
+    state.time = time;
+    state.multipliers.setZero();
+    for (unsigned int i = 0; i < s; ++i)
+      state.multipliers += multiplier_shape(i) * accepted_multipliers[i];
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        state.positions[b].add(c * tau, step_start.velocities[b]);
+        for (unsigned int i = 0; i < s; ++i)
+          {
+            state.positions[b].add(shape.values[i], accepted_stages[i][b]);
+            state.velocities[b].add(velocity_of_stages(i),
+                                    accepted_stages[i][b]);
+          }
+      }
+    return state;
+  }
+} // namespace ACF

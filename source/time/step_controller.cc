@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/time/step_controller.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ACF
+{
+  StepController::StepController(const double       base_step_size,
+                                 const unsigned int max_halvings)
+    : base_step_size(base_step_size)
+    , max_halvings(max_halvings)
+  {}
+
+
+
+  double
+  StepController::time() const
+  {
+    return (base_steps + std::ldexp(fraction, -static_cast<int>(max_halvings))) *
+           base_step_size;
+  }
+
+
+
+  double
+  StepController::step_size() const
+  {
+    return std::ldexp(base_step_size, -static_cast<int>(n_halvings));
+  }
+
+
+
+  void
+  StepController::accept()
+  {
+    const std::uint64_t one = 1;
+    fraction += one << (max_halvings - n_halvings);
+    if (fraction == one << max_halvings)
+      {
+        ++base_steps;
+        fraction = 0;
+      }
+    just_doubled = false;
+    ++n_successes;
+
+    if (n_halvings > 0 && n_successes >= needed_successes &&
+        fraction % (one << (max_halvings - n_halvings + 1)) == 0)
+      {
+        --n_halvings;
+        n_successes  = 0;
+        just_doubled = true;
+      }
+    if (n_halvings == 0 && n_successes >= needed_successes)
+      needed_successes = 2;
+  }
+
+
+
+  bool
+  StepController::halve()
+  {
+    if (n_halvings == max_halvings)
+      return false;
+    if (just_doubled)
+      needed_successes = std::min(1024U, 2 * needed_successes);
+    just_doubled = false;
+    n_successes  = 0;
+    ++n_halvings;
+    return true;
+  }
+} // namespace ACF
