@@ -48,12 +48,12 @@ namespace ACF
       std::vector<std::string> names;
       std::string list;
       for (const Option &option : options())
-      {
-        if (option.name == name)
-          return option;
-        names.push_back(option.name);
-        list += (list.empty() ? "" : ", ") + option.name;
-      }
+        {
+          if (option.name == name)
+            return option;
+          names.push_back(option.name);
+          list += (list.empty() ? "" : ", ") + option.name;
+        }
       fail("the unknown option '" + name + "'", list + suggestion(name, names));
     }
 
@@ -162,10 +162,10 @@ namespace ACF
     check_actions(seen, arguments.size());
     if (result.action == CommandLine::Action::run ||
         result.action == CommandLine::Action::validate)
-    {
-      check_models(models);
-      result.model = models[0];
-    }
+      {
+        check_models(models);
+        result.model = models[0];
+      }
     return result;
   }
 
@@ -180,14 +180,14 @@ namespace ACF
       "\n"
       "Options:\n";
     for (const Option &option : options())
-    {
-      std::string usage = "  " + option.name;
-      if (!option.value.empty())
-        usage += " " + option.value;
-      // the options' descriptions begin in one column
-      usage.resize(std::max<std::size_t>(usage.size() + 2, 32), ' ');
-      text += usage + option.documentation + "\n";
-    }
+      {
+        std::string usage = "  " + option.name;
+        if (!option.value.empty())
+          usage += " " + option.value;
+        // the options' descriptions begin in one column
+        usage.resize(std::max<std::size_t>(usage.size() + 2, 32), ' ');
+        text += usage + option.documentation + "\n";
+      }
     return text +
            "  --                            end of the options\n"
            "\n"

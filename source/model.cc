@@ -12,11 +12,11 @@ namespace ACF
     // Declares "Names" and one subsection per object.
     template <typename Parameters>
     void
-    declare_named(ParameterHandler               &prm,
-                  const std::string              &section,
-                  const std::string              &documentation,
+    declare_named(ParameterHandler &prm,
+                  const std::string &section,
+                  const std::string &documentation,
                   const std::vector<std::string> &names,
-                  std::vector<Parameters>        &objects)
+                  std::vector<Parameters> &objects)
     {
       prm.enter_subsection(section);
       std::string list;
@@ -42,8 +42,8 @@ namespace ACF
 
 
     void
-    declare_model(ParameterHandler               &prm,
-                  Model                          &model,
+    declare_model(ParameterHandler &prm,
+                  Model &model,
                   const std::vector<std::string> &bodies,
                   const std::vector<std::string> &joints,
                   const std::vector<std::string> &probes)
@@ -101,7 +101,7 @@ namespace ACF
   Model
   read_model(const ParameterFile &file)
   {
-    Model            model;
+    Model model;
     ParameterHandler prm;
     declare_model(prm,
                   model,
@@ -138,7 +138,7 @@ namespace ACF
   std::string
   default_model_file()
   {
-    Model            model;
+    Model model;
     ParameterHandler prm;
     declare_model(prm, model, {"body"}, {"joint"}, {"probe"});
     return documented_parameters(prm);

@@ -3,18 +3,17 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
-
 #include <acf/io/probes.h>
 #include <acf/io/vtu_output.h>
-
 #include <acf/model.h>
 #include <acf/simulation.h>
 #include <acf/version.h>
 
 #include <deal.II/base/multithread_info.h>
 
-#include <mpi.h>
 #include <nlohmann/json.hpp>
+
+#include <mpi.h>
 
 #include <fstream>
 #include <ostream>
@@ -38,10 +37,7 @@ namespace ACF
         if (owner)
           {
             int provided = 0;
-            MPI_Init_thread(nullptr,
-                            nullptr,
-                            MPI_THREAD_SERIALIZED,
-                            &provided);
+            MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
           }
       }
 
@@ -66,7 +62,7 @@ namespace ACF
     write_file(const std::filesystem::path &file, const std::string &text)
     {
       const std::filesystem::path temporary = file.string() + ".tmp";
-      std::ofstream               stream(temporary);
+      std::ofstream stream(temporary);
       stream << text << std::flush;
       stream.close();
       std::error_code error;
@@ -106,9 +102,10 @@ namespace ACF
       for (const Body &body : system.bodies())
         {
           const BodyOperators &operators = body.operators();
-          const auto &mesh = body.discretization().mesh();
-          stream << "Body '" << body.name() << "': "
-                 << mesh.triangulation().n_active_cells() << " quadratic "
+          const auto &mesh               = body.discretization().mesh();
+          stream << "Body '" << body.name()
+                 << "': " << mesh.triangulation().n_active_cells()
+                 << " quadratic "
                  << (mesh.is_simplex() ? "tetrahedra" : "hexahedra") << ", "
                  << operators.n_unknowns() << " unknowns, volume "
                  << format_number(operators.volume) << " m^3, mass "
@@ -140,65 +137,64 @@ namespace ACF
         const auto it = statistics.wall_times.find(phase);
         return it == statistics.wall_times.end() ? 0. : it->second;
       };
-      stream << statistics.steps << " steps ("
-             << statistics.rejected_steps << " rejected) with "
-             << statistics.newton_iterations << " iterations, "
+      stream << statistics.steps << " steps (" << statistics.rejected_steps
+             << " rejected) with " << statistics.newton_iterations
+             << " iterations, "
              << statistics.real_factorizations +
                   statistics.complex_factorizations
-             << " factorisations ("
-             << format_bytes(statistics.factor_bytes) << "), "
-             << statistics.real_solves + statistics.complex_solves
+             << " factorisations (" << format_bytes(statistics.factor_bytes)
+             << "), " << statistics.real_solves + statistics.complex_solves
              << " solves\n"
              << "Time: assembly " << format_duration(time("assembly"))
              << ", factorisation " << format_duration(time("factorisation"))
              << ", time steps "
              << format_duration(time("time steps") - time("factorisation"))
-             << " (solves " << format_duration(time("solves"))
-             << "), output " << format_duration(time("output"))
-             << "; peak memory " << format_bytes(peak_memory()) << std::endl;
+             << " (solves " << format_duration(time("solves")) << "), output "
+             << format_duration(time("output")) << "; peak memory "
+             << format_bytes(peak_memory()) << std::endl;
     }
   } // namespace
 
 
 
   std::string
-  statistics_json(const Statistics      &statistics,
+  statistics_json(const Statistics &statistics,
                   const MultibodySystem &system,
-                  const bool             finished)
+                  const bool finished)
   {
     nlohmann::ordered_json json;
-    json["version"]  = ACF_VERSION;
-    json["finished"] = finished;
-    json["steps"]    = statistics.steps;
+    json["version"]               = ACF_VERSION;
+    json["finished"]              = finished;
+    json["steps"]                 = statistics.steps;
     json["rejected steps"]        = statistics.rejected_steps;
     json["halvings"]              = statistics.halvings;
     json["newton iterations"]     = statistics.newton_iterations;
     json["newton iterations max"] = statistics.max_newton_iterations;
-    json["factorisations"]        = {
-      {"real", statistics.real_factorizations},
-      {"complex", statistics.complex_factorizations}};
-    json["solves"] = {{"real", statistics.real_solves},
-                      {"complex", statistics.complex_solves},
-                      {"setup", statistics.setup_solves}};
-    json["force evaluations"]  = statistics.force_evaluations;
-    json["schur complements"]  = statistics.schur_complements;
-    json["stress evaluations"] = statistics.stress_evaluations;
-    json["vtu files"]          = statistics.vtu_files;
-    json["probe rows"]         = statistics.probe_rows;
-    json["constraints"]        = system.n_constraints();
+    json["factorisations"]        = {{"real", statistics.real_factorizations},
+                                     {"complex", statistics.complex_factorizations}};
+    json["solves"]                = {{"real", statistics.real_solves},
+                                     {"complex", statistics.complex_solves},
+                                     {"setup", statistics.setup_solves}};
+    json["force evaluations"]     = statistics.force_evaluations;
+    json["schur complements"]     = statistics.schur_complements;
+    json["stress evaluations"]    = statistics.stress_evaluations;
+    json["vtu files"]             = statistics.vtu_files;
+    json["probe rows"]            = statistics.probe_rows;
+    json["constraints"]           = system.n_constraints();
     for (const Body &body : system.bodies())
       json["bodies"][body.name()] = {
-        {"cells", body.discretization().mesh().triangulation().n_active_cells()},
+        {"cells",
+         body.discretization().mesh().triangulation().n_active_cells()},
         {"unknowns", body.operators().n_unknowns()},
         {"mass [kg]", body.operators().mass},
         {"volume [m^3]", body.operators().volume},
         {"operator memory [B]", body.operators().memory_consumption()}};
-    json["factor entries"]             = statistics.factor_entries;
-    json["factor memory [B]"]          = statistics.factor_bytes;
-    json["joint column memory [B]"]    = statistics.joint_column_bytes;
-    json["factor backward error"]      = statistics.factor_backward_error;
-    json["threads"]                    = MultithreadInfo::n_threads();
-    json["peak memory [B]"]            = peak_memory();
+    json["factor entries"]          = statistics.factor_entries;
+    json["factor memory [B]"]       = statistics.factor_bytes;
+    json["joint column memory [B]"] = statistics.joint_column_bytes;
+    json["factor backward error"]   = statistics.factor_backward_error;
+    json["threads"]                 = MultithreadInfo::n_threads();
+    json["peak memory [B]"]         = peak_memory();
     for (const auto &[phase, seconds] : statistics.wall_times)
       json["wall time [s]"][phase] = seconds;
     return json.dump(2) + "\n";
@@ -207,12 +203,12 @@ namespace ACF
 
 
   void
-  run_model(const Model                 &model,
+  run_model(const Model &model,
             const std::filesystem::path &output_directory,
-            std::ostream                &stream,
-            const bool                   quiet)
+            std::ostream &stream,
+            const bool quiet)
   {
-    Statistics                             statistics;
+    Statistics statistics;
     std::unique_ptr<const MultibodySystem> system;
     {
       const PhaseTimer timer(statistics, "assembly");
@@ -234,15 +230,12 @@ namespace ACF
                                       output_directory,
                                       statistics));
     if (model.output.vtu.interval > 0)
-      observers.push_back(std::make_unique<VtuOutput>(*system,
-                                                      output_directory,
-                                                      model.output.vtu,
-                                                      statistics));
-    write_file(output_directory / "used_parameters.prm",
-               model.used_parameters);
+      observers.push_back(std::make_unique<VtuOutput>(
+        *system, output_directory, model.output.vtu, statistics));
+    write_file(output_directory / "used_parameters.prm", model.used_parameters);
 
     const MpiSession mpi;
-    const auto       write_statistics = [&](const bool finished) {
+    const auto write_statistics = [&](const bool finished) {
       write_file(output_directory / "statistics.json",
                  statistics_json(statistics, *system, finished));
     };
@@ -295,7 +288,7 @@ namespace ACF
     openblas_set_num_threads(MultithreadInfo::n_threads());
 
     const ParameterFile file(command_line.model, command_line.overrides);
-    const Model         model = read_model(file);
+    const Model model = read_model(file);
     const std::filesystem::path output_directory =
       command_line.output_directory.value_or(model.output.directory);
     try

@@ -4,6 +4,7 @@
 #include <deal.II/base/exceptions.h>
 
 #include <gtest/gtest.h>
+
 #include <mpi.h>
 
 int

@@ -5,7 +5,6 @@
 #define acf_model_h
 
 #include <acf/base/parameter_file.h>
-
 #include <acf/io/probes.h>
 #include <acf/io/vtu_output.h>
 
@@ -31,12 +30,12 @@ namespace ACF
   /** Everything that a model file says, checked as far as no mesh is needed. */
   struct Model
   {
-    std::string                  title;
-    std::vector<BodyParameters>  bodies;
+    std::string title;
+    std::vector<BodyParameters> bodies;
     std::vector<JointParameters> joints;
-    LoadParameters               loads;
-    TimeParameters               time;
-    OutputParameters             output;
+    LoadParameters loads;
+    TimeParameters time;
+    OutputParameters output;
     std::vector<ProbeParameters> probes;
 
     /** Folder of the model file: relative mesh file names start here. */

@@ -4,10 +4,8 @@
 #ifndef acf_simulation_h
 #define acf_simulation_h
 
-#include <acf/command_line.h>
-
 #include <acf/base/statistics.h>
-
+#include <acf/command_line.h>
 #include <acf/mechanics/multibody_system.h>
 
 #include <iosfwd>
@@ -31,16 +29,16 @@ namespace ACF
    * results so far and its statistics.
    */
   void
-  run_model(const Model                 &model,
+  run_model(const Model &model,
             const std::filesystem::path &output_directory,
-            std::ostream                &stream,
-            const bool                   quiet);
+            std::ostream &stream,
+            const bool quiet);
 
   /** The statistics of a run as JSON text. */
   std::string
-  statistics_json(const Statistics      &statistics,
+  statistics_json(const Statistics &statistics,
                   const MultibodySystem &system,
-                  const bool             finished);
+                  const bool finished);
 } // namespace ACF
 
 #endif

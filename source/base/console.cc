@@ -60,8 +60,8 @@ namespace ACF
 
 
   Progress::Progress(std::ostream &stream,
-                     const bool    enabled,
-                     const double  end_time)
+                     const bool enabled,
+                     const double end_time)
     : stream(stream)
     , enabled(enabled)
     , end_time(end_time)
@@ -80,9 +80,9 @@ namespace ACF
 
 
   void
-  Progress::update(const double        time,
-                   const double        step_size,
-                   const unsigned int  iterations,
+  Progress::update(const double time,
+                   const double step_size,
+                   const unsigned int iterations,
                    const unsigned long n_steps)
   {
     if (!enabled)
@@ -98,11 +98,11 @@ namespace ACF
       std::max(0., elapsed * (end_time - time) / std::max(time, 1e-300));
     std::ostringstream line;
     line << "t = " << format_number(time) << " of " << format_number(end_time)
-         << " s, step " << n_steps << " (" << format_number(step_size)
-         << " s, " << iterations
-         << (iterations == 1 ? " iteration" : " iterations") << "), "
-         << (finished ? "took " + format_duration(elapsed) :
-                        format_duration(left) + " left");
+         << " s, step " << n_steps << " (" << format_number(step_size) << " s, "
+         << iterations << (iterations == 1 ? " iteration" : " iterations")
+         << "), "
+         << (finished ? "took " + format_duration(elapsed)
+                      : format_duration(left) + " left");
     stream << "\r\033[K" << line.str() << std::flush;
     line_open = true;
   }

@@ -59,23 +59,23 @@ namespace ACF
     {
       unsigned int n_continuation_bytes = 0;
       for (std::size_t i = 0; i < text.size(); ++i)
-      {
-        const unsigned char byte = text[i];
-        const bool line_end =
-          byte == '\n' ||
-          (byte == '\r' && (i + 1 == text.size() || text[i + 1] == '\n'));
-        const bool control =
-          (byte < 0x20 && byte != '\t' && !line_end) || byte == 0x7f;
-        const bool continues = (byte & 0xc0) == 0x80;
-        if (control || continues != (n_continuation_bytes > 0) ||
-            byte == 0xc0 || byte == 0xc1 || byte > 0xf4)
-          return i;
-        n_continuation_bytes = continues      ? n_continuation_bytes - 1
-                               : byte >= 0xf0 ? 3
-                               : byte >= 0xe0 ? 2
-                               : byte >= 0xc0 ? 1
-                                              : 0;
-      }
+        {
+          const unsigned char byte = text[i];
+          const bool line_end =
+            byte == '\n' ||
+            (byte == '\r' && (i + 1 == text.size() || text[i + 1] == '\n'));
+          const bool control =
+            (byte < 0x20 && byte != '\t' && !line_end) || byte == 0x7f;
+          const bool continues = (byte & 0xc0) == 0x80;
+          if (control || continues != (n_continuation_bytes > 0) ||
+              byte == 0xc0 || byte == 0xc1 || byte > 0xf4)
+            return i;
+          n_continuation_bytes = continues      ? n_continuation_bytes - 1
+                                 : byte >= 0xf0 ? 3
+                                 : byte >= 0xe0 ? 2
+                                 : byte >= 0xc0 ? 1
+                                                : 0;
+        }
       return n_continuation_bytes > 0 ? text.size() - 1 : std::string::npos;
     }
 
@@ -127,18 +127,18 @@ namespace ACF
       const Json *section = &tree;
       std::string parent;
       for (const std::string &name : Utilities::split_string_list(path, '/'))
-      {
-        const auto names = declared_names(*section, false);
-        if (std::find(names.begin(), names.end(), name) == names.end())
-          throw InputError(parent,
-                           "",
-                           "the unknown subsection " + in_quotes(name),
-                           names.empty() ? "no subsection"
-                                         : list_words(names, "'") +
-                                             suggestion(name, names));
-        section = &(*section)[name];
-        parent  = join(parent, name);
-      }
+        {
+          const auto names = declared_names(*section, false);
+          if (std::find(names.begin(), names.end(), name) == names.end())
+            throw InputError(parent,
+                             "",
+                             "the unknown subsection " + in_quotes(name),
+                             names.empty() ? "no subsection"
+                                           : list_words(names, "'") +
+                                               suggestion(name, names));
+          section = &(*section)[name];
+          parent  = join(parent, name);
+        }
       return *section;
     }
 
@@ -195,13 +195,13 @@ namespace ACF
 
       const InSection in_section(prm, section);
       try
-      {
-        prm.set(entry, value);
-      }
+        {
+          prm.set(entry, value);
+        }
       catch (const ExceptionBase &)
-      {
-        throw mismatch;
-      }
+        {
+          throw mismatch;
+        }
     }
 
     std::string
@@ -264,23 +264,23 @@ namespace ACF
     unsigned int first_line = 1;
     bool continued          = false;
     for (unsigned int line_n = 1; std::getline(stream, line); ++line_n)
-    {
-      line      = Utilities::trim(line);
-      continued = !line.empty() && line.back() == '\\';
-      if (continued)
-        line.pop_back();
-      statement += line;
-      if (continued && statement.find('#') != std::string::npos)
-        add_problem(line_n,
-                    "",
-                    "a comment that swallows the next line",
-                    "comments without '\\' at the end");
-      if (continued)
-        continue;
-      scan_statement(statement, first_line);
-      statement.clear();
-      first_line = line_n + 1;
-    }
+      {
+        line      = Utilities::trim(line);
+        continued = !line.empty() && line.back() == '\\';
+        if (continued)
+          line.pop_back();
+        statement += line;
+        if (continued && statement.find('#') != std::string::npos)
+          add_problem(line_n,
+                      "",
+                      "a comment that swallows the next line",
+                      "comments without '\\' at the end");
+        if (continued)
+          continue;
+        scan_statement(statement, first_line);
+        statement.clear();
+        first_line = line_n + 1;
+      }
     if (continued)
       scan_statement(statement, first_line);
 
@@ -310,12 +310,12 @@ namespace ACF
       return keyword == lower || keyword == upper;
     };
     if (is("subsection", "SUBSECTION") && !rest.empty())
-    {
-      add_statement({join(section, rest), "", "", line});
-      if (rest.find('/') != std::string::npos)
-        add_problem(line, "", in_quotes(statement), "names without '/'");
-      open_sections.push_back(statements.back());
-    }
+      {
+        add_statement({join(section, rest), "", "", line});
+        if (rest.find('/') != std::string::npos)
+          add_problem(line, "", in_quotes(statement), "names without '/'");
+        open_sections.push_back(statements.back());
+      }
     else if (is("set", "SET") && equals != std::string::npos && !name.empty())
       add_statement(
         {section, name, Utilities::trim(rest.substr(equals + 1)), line});
@@ -350,20 +350,20 @@ namespace ACF
                             other.entry == statement.entry;
                    });
     if (first != statements.end())
-    {
-      const std::string in_line = std::to_string(first->line);
-      if (statement.entry.empty())
-        add_problem(statement.line,
-                    "",
-                    "the subsection '" + statement.section +
-                      "' a second time (first in line " + in_line + ")",
-                    "each subsection once");
-      else
-        add_problem(statement.line,
-                    statement.entry,
-                    "the entry a second time (first in line " + in_line + ")",
-                    "each entry once");
-    }
+      {
+        const std::string in_line = std::to_string(first->line);
+        if (statement.entry.empty())
+          add_problem(statement.line,
+                      "",
+                      "the subsection '" + statement.section +
+                        "' a second time (first in line " + in_line + ")",
+                      "each subsection once");
+        else
+          add_problem(statement.line,
+                      statement.entry,
+                      "the entry a second time (first in line " + in_line + ")",
+                      "each entry once");
+      }
     if (!statement.value.empty() && statement.value.back() == '\\')
       add_problem(statement.line,
                   statement.entry,
@@ -409,10 +409,10 @@ namespace ACF
     scanner.scan(text.substr(
       text.rfind(byte_order_mark, 0) == 0 ? byte_order_mark.size() : 0));
     if (!scanner.problems.empty())
-    {
-      const auto &[line, problem] = *scanner.problems.begin();
-      throw problem.located(file.string(), line);
-    }
+      {
+        const auto &[line, problem] = *scanner.problems.begin();
+        throw problem.located(file.string(), line);
+      }
     statements = scanner.statements;
     if (statements.empty())
       throw InputError("found a file without any entry; allowed: a model file")
@@ -474,41 +474,41 @@ namespace ACF
       names = split(set->value, ",");
 
     for (auto name = names.begin(); name != names.end(); ++name)
-    {
-      const auto fail = [&](const std::string &found,
-                            const std::string &allowed) {
-        throw located(InputError(section, "Names", found, allowed), *set);
-      };
-      if (name->empty())
-        fail("an empty name in " + in_quotes(set->value),
-             "names separated by ','");
-      if (!is_suitable_name(*name))
-        fail("the name " + in_quotes(*name),
-             "letters, digits, spaces, '_', '-' and '+', beginning with a "
-             "letter or a digit");
-      if (*name == "Names")
-        fail("the name 'Names'", "names other than that of the entry");
-      if (std::find(names.begin(), name, *name) != name)
-        fail("the name " + in_quotes(*name) + " twice", "each name once");
-    }
+      {
+        const auto fail = [&](const std::string &found,
+                              const std::string &allowed) {
+          throw located(InputError(section, "Names", found, allowed), *set);
+        };
+        if (name->empty())
+          fail("an empty name in " + in_quotes(set->value),
+               "names separated by ','");
+        if (!is_suitable_name(*name))
+          fail("the name " + in_quotes(*name),
+               "letters, digits, spaces, '_', '-' and '+', beginning with a "
+               "letter or a digit");
+        if (*name == "Names")
+          fail("the name 'Names'", "names other than that of the entry");
+        if (std::find(names.begin(), name, *name) != name)
+          fail("the name " + in_quotes(*name) + " twice", "each name once");
+      }
 
     std::vector<std::string> subsections;
     for (const Statement &statement : statements)
-    {
-      const std::size_t slash = statement.section.rfind('/');
-      if (slash == std::string::npos ||
-          statement.section.substr(0, slash) != section)
-        continue;
-      subsections.push_back(statement.section.substr(slash + 1));
-      if (std::find(names.begin(), names.end(), subsections.back()) ==
-          names.end())
-        throw located(InputError("section " + in_quotes(section) +
-                                 " has a subsection " +
-                                 in_quotes(subsections.back()) +
-                                 " that is not in its Names (" +
-                                 list_words(names, "") + ")"),
-                      statement);
-    }
+      {
+        const std::size_t slash = statement.section.rfind('/');
+        if (slash == std::string::npos ||
+            statement.section.substr(0, slash) != section)
+          continue;
+        subsections.push_back(statement.section.substr(slash + 1));
+        if (std::find(names.begin(), names.end(), subsections.back()) ==
+            names.end())
+          throw located(InputError("section " + in_quotes(section) +
+                                   " has a subsection " +
+                                   in_quotes(subsections.back()) +
+                                   " that is not in its Names (" +
+                                   list_words(names, "") + ")"),
+                        statement);
+      }
     for (const std::string &name : names)
       if (std::find(subsections.begin(), subsections.end(), name) ==
           subsections.end())
@@ -525,16 +525,19 @@ namespace ACF
     const Json tree = declarations(prm);
     for (const Statement &statement : statements)
       try
-      {
-        const Json &section = declared_section(tree, statement.section);
-        if (!statement.entry.empty())
-          set_entry(
-            prm, section, statement.section, statement.entry, statement.value);
-      }
+        {
+          const Json &section = declared_section(tree, statement.section);
+          if (!statement.entry.empty())
+            set_entry(prm,
+                      section,
+                      statement.section,
+                      statement.entry,
+                      statement.value);
+        }
       catch (const InputError &error)
-      {
-        throw located(error, statement);
-      }
+        {
+          throw located(error, statement);
+        }
   }
 
   bool

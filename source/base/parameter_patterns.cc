@@ -25,18 +25,18 @@ namespace ACF
       std::vector<unsigned int> row(second.size() + 1);
       std::iota(row.begin(), row.end(), 0u);
       for (std::size_t i = 0; i < first.size(); ++i)
-      {
-        unsigned int diagonal = row[0]++;
-        for (std::size_t j = 0; j < second.size(); ++j)
         {
-          const bool equal =
-            std::tolower(static_cast<unsigned char>(first[i])) ==
-            std::tolower(static_cast<unsigned char>(second[j]));
-          const unsigned int replaced = diagonal + (equal ? 0 : 1);
-          diagonal                    = row[j + 1];
-          row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+          unsigned int diagonal = row[0]++;
+          for (std::size_t j = 0; j < second.size(); ++j)
+            {
+              const bool equal =
+                std::tolower(static_cast<unsigned char>(first[i])) ==
+                std::tolower(static_cast<unsigned char>(second[j]));
+              const unsigned int replaced = diagonal + (equal ? 0 : 1);
+              diagonal                    = row[j + 1];
+              row[j + 1] = std::min({replaced, row[j] + 1, row[j + 1] + 1});
+            }
         }
-      }
       return row.back();
     }
 
@@ -146,30 +146,30 @@ namespace ACF
   strictly_matches(const std::string &value, const std::string &description)
   {
     if (const auto list = parse_list_pattern(description))
-    {
-      const auto elements = split(value, list->separator);
-      return value.empty() ||
-             std::all_of(elements.begin(),
-                         elements.end(),
-                         [&list](const std::string &element) {
-                           return !element.empty() &&
-                                  strictly_matches(element, list->element);
-                         });
-    }
+      {
+        const auto elements = split(value, list->separator);
+        return value.empty() ||
+               std::all_of(elements.begin(),
+                           elements.end(),
+                           [&list](const std::string &element) {
+                             return !element.empty() &&
+                                    strictly_matches(element, list->element);
+                           });
+      }
     if (description.rfind("[MultipleSelection", 0) == 0)
       return value.empty() || value.back() != ',';
     // would be read into an unsigned integer, modulo 2^32
     if (description == "[Integer]")
       return value.rfind('-', 0) != 0;
     if (description.rfind("[Double", 0) == 0)
-    {
-      double number;
-      const char *begin = value.data(), *end = begin + value.size();
-      if (begin != end && *begin == '+')
-        ++begin;
-      return std::from_chars(begin, end, number).ec !=
-             std::errc::result_out_of_range;
-    }
+      {
+        double number;
+        const char *begin = value.data(), *end = begin + value.size();
+        if (begin != end && *begin == '+')
+          ++begin;
+        return std::from_chars(begin, end, number).ec !=
+               std::errc::result_out_of_range;
+      }
     return true;
   }
 
@@ -195,24 +195,24 @@ namespace ACF
     std::smatch match;
     static const std::regex selection(R"(\[(Multiple)?Selection (.*) \])");
     if (std::regex_match(description, match, selection))
-    {
-      const std::string words = list_words(split(match[2], "|"), "");
-      return match[1].matched
-               ? "a list of words out of " + words + " separated by ','"
-             : plural ? "words out of " + words
-                      : "one of " + words;
-    }
+      {
+        const std::string words = list_words(split(match[2], "|"), "");
+        return match[1].matched
+                 ? "a list of words out of " + words + " separated by ','"
+               : plural ? "words out of " + words
+                        : "one of " + words;
+      }
     static const std::regex tuple(
       R"(\[Tuple of <\d+> elements <(.*?)>(?: separated by <([^<>]*)>)?\])");
     if (std::regex_match(description, match, tuple))
-    {
-      std::vector<std::string> elements = split(match[1], ">, <");
-      for (std::string &element : elements)
-        element = allowed_values(element);
-      return (plural ? "tuples of " : "a tuple of ") +
-             list_words(elements, "") + " separated by " +
-             in_quotes(match[2].matched ? match[2].str() : ":");
-    }
+      {
+        std::vector<std::string> elements = split(match[1], ">, <");
+        for (std::string &element : elements)
+          element = allowed_values(element);
+        return (plural ? "tuples of " : "a tuple of ") +
+               list_words(elements, "") + " separated by " +
+               in_quotes(match[2].matched ? match[2].str() : ":");
+      }
     return description;
   }
 
@@ -223,20 +223,20 @@ namespace ACF
     std::string nearest;
     unsigned int smallest = numbers::invalid_unsigned_int;
     for (const std::string &candidate : candidates)
-    {
-      // an abbreviation is as near as one wrong letter
-      const unsigned int distance =
-        word.size() > 2 && candidate.rfind(word, 0) == 0
-          ? 1
-          : edit_distance(word, candidate);
-      // two changes in five letters are a misspelling, more another word
-      if (distance < smallest &&
-          5 * distance <= 2 * std::max(word.size(), candidate.size()))
       {
-        smallest = distance;
-        nearest  = candidate;
+        // an abbreviation is as near as one wrong letter
+        const unsigned int distance =
+          word.size() > 2 && candidate.rfind(word, 0) == 0
+            ? 1
+            : edit_distance(word, candidate);
+        // two changes in five letters are a misspelling, more another word
+        if (distance < smallest &&
+            5 * distance <= 2 * std::max(word.size(), candidate.size()))
+          {
+            smallest = distance;
+            nearest  = candidate;
+          }
       }
-    }
     return nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)";
   }
 } // namespace ACF

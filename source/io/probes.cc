@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/io/probes.h>
 
 #include <deal.II/base/numbers.h>
@@ -39,9 +38,9 @@ namespace ACF
     class FunctionalProbe : public Probe
     {
     public:
-      FunctionalProbe(const unsigned int     body,
+      FunctionalProbe(const unsigned int body,
                       const NodalFunctional &functional,
-                      const bool             velocity)
+                      const bool velocity)
         : body(body)
         , functional(functional)
         , velocity(velocity)
@@ -56,14 +55,14 @@ namespace ACF
       std::vector<double>
       evaluate(const SystemState &state) override
       {
-        return components(functional(velocity ? state.velocities[body] :
-                                                state.positions[body]));
+        return components(functional(velocity ? state.velocities[body]
+                                              : state.positions[body]));
       }
 
     private:
-      const unsigned int    body;
+      const unsigned int body;
       const NodalFunctional functional;
-      const bool            velocity;
+      const bool velocity;
     };
 
 
@@ -75,14 +74,14 @@ namespace ACF
     public:
       struct End
       {
-        unsigned int    body;
+        unsigned int body;
         NodalFunctional functional;
       };
 
-      ChordProbe(const End                &from,
-                 const End                &to,
+      ChordProbe(const End &from,
+                 const End &to,
                  const std::optional<End> &point,
-                 const unsigned int        axis)
+                 const unsigned int axis)
         : from(from)
         , to(to)
         , point(point)
@@ -101,9 +100,9 @@ namespace ACF
       std::vector<double>
       evaluate(const SystemState &state) override
       {
-        const Vector3 start = from.functional(state.positions[from.body]);
-        const Vector3 chord = to.functional(state.positions[to.body]) - start;
-        const double  wrapped = std::atan2(chord[second], chord[first]);
+        const Vector3 start  = from.functional(state.positions[from.body]);
+        const Vector3 chord  = to.functional(state.positions[to.body]) - start;
+        const double wrapped = std::atan2(chord[second], chord[first]);
         if (n_evaluations++ == 0)
           angle = wrapped;
         else // the branch nearest to the angle before
@@ -119,13 +118,13 @@ namespace ACF
       }
 
     private:
-      const End                from;
-      const End                to;
+      const End from;
+      const End to;
       const std::optional<End> point;
-      const unsigned int       first;
-      const unsigned int       second;
-      unsigned long            n_evaluations = 0;
-      double                   angle         = 0;
+      const unsigned int first;
+      const unsigned int second;
+      unsigned long n_evaluations = 0;
+      double angle                = 0;
     };
 
 
@@ -155,13 +154,13 @@ namespace ACF
             const SystemEnergy energy = system.energy(state);
             return {energy.kinetic, energy.elastic, energy.potential};
           }
-        return components(type == "momentum" ? system.momentum(state) :
-                                               system.angular_momentum(state));
+        return components(type == "momentum" ? system.momentum(state)
+                                             : system.angular_momentum(state));
       }
 
     private:
       const MultibodySystem &system;
-      const std::string      type;
+      const std::string type;
     };
 
 
@@ -177,7 +176,7 @@ namespace ACF
       std::vector<std::string>
       columns() const override
       {
-        auto       names  = vector_columns("N", "force ");
+        auto names        = vector_columns("N", "force ");
         const auto moment = vector_columns("N m", "moment ");
         names.insert(names.end(), moment.begin(), moment.end());
         return names;
@@ -187,7 +186,7 @@ namespace ACF
       evaluate(const SystemState &state) override
       {
         const auto reaction = system.reaction(joint, state);
-        auto       values   = components(reaction.force);
+        auto values         = components(reaction.force);
         const auto moment   = components(reaction.moment);
         values.insert(values.end(), moment.begin(), moment.end());
         return values;
@@ -195,7 +194,7 @@ namespace ACF
 
     private:
       const MultibodySystem &system;
-      const unsigned int     joint;
+      const unsigned int joint;
     };
 
 
@@ -203,8 +202,8 @@ namespace ACF
     ChordProbe::End
     surface_end(const MultibodySystem &system,
                 const ProbeParameters &parameters,
-                const std::string     &text,
-                const std::string     &entry)
+                const std::string &text,
+                const std::string &entry)
     {
       const SurfaceName name =
         parse_surface_name(text, parameters.section(), entry);
@@ -256,8 +255,8 @@ namespace ACF
                        "Of",
                        "the joint '" + parameters.of +
                          "', which does not exist",
-                       names.empty() ? "nothing, as there are no joints" :
-                                       names);
+                       names.empty() ? "nothing, as there are no joints"
+                                     : names);
     }
   } // namespace
 
@@ -309,15 +308,15 @@ namespace ACF
   void
   ProbeParameters::check() const
   {
-    const bool is_chord    = (type == "chord");
-    const bool is_point    = (type.rfind("point", 0) == 0);
-    const bool has_subject = is_point || type.rfind("mean", 0) == 0 ||
-                             type == "reaction";
+    const bool is_chord = (type == "chord");
+    const bool is_point = (type.rfind("point", 0) == 0);
+    const bool has_subject =
+      is_point || type.rfind("mean", 0) == 0 || type == "reaction";
 
     const auto check_entry = [&](const std::string &entry,
-                                 const bool         given,
-                                 const bool         required,
-                                 const bool         possible) {
+                                 const bool given,
+                                 const bool required,
+                                 const bool possible) {
       if (required && !given)
         throw InputError(section(),
                          entry,
@@ -327,8 +326,7 @@ namespace ACF
         throw InputError(section(),
                          entry,
                          "a value",
-                         "nothing, as the type '" + type +
-                           "' does not use it");
+                         "nothing, as the type '" + type + "' does not use it");
     };
     check_entry("Of", !of.empty(), has_subject, has_subject);
     check_entry("From", !from.empty(), is_chord, is_chord);
@@ -346,8 +344,8 @@ namespace ACF
   std::unique_ptr<Probe>
   make_probe(const ProbeParameters &parameters, const MultibodySystem &system)
   {
-    const std::string &type     = parameters.type;
-    const bool         velocity = type.find("velocity") != std::string::npos;
+    const std::string &type = parameters.type;
+    const bool velocity     = type.find("velocity") != std::string::npos;
 
     if (type == "mean position" || type == "mean velocity")
       {
@@ -358,10 +356,8 @@ namespace ACF
       }
     if (type == "point position" || type == "point velocity")
       {
-        const unsigned int b = find_body(system.bodies(),
-                                         parameters.of,
-                                         parameters.section(),
-                                         "Of");
+        const unsigned int b =
+          find_body(system.bodies(), parameters.of, parameters.section(), "Of");
         return std::make_unique<FunctionalProbe>(
           b, point_functional(system.bodies()[b], parameters), velocity);
       }
@@ -388,11 +384,11 @@ namespace ACF
 
 
 
-  ProbeOutput::ProbeOutput(const MultibodySystem              &system,
+  ProbeOutput::ProbeOutput(const MultibodySystem &system,
                            const std::vector<ProbeParameters> &parameters,
-                           const double                        interval,
-                           const std::filesystem::path        &directory,
-                           Statistics                         &statistics)
+                           const double interval,
+                           const std::filesystem::path &directory,
+                           Statistics &statistics)
     : Observer(interval)
     , file(directory / "probes.csv")
     , statistics(statistics)
@@ -423,9 +419,9 @@ namespace ACF
   void
   ProbeOutput::observe(const SystemState &state)
   {
-    std::string           line;
+    std::string line;
     std::array<char, 40> buffer;
-    const auto            append = [&](const double value) {
+    const auto append = [&](const double value) {
       const auto end =
         std::to_chars(buffer.data(), buffer.data() + buffer.size(), value).ptr;
       line.append(buffer.data(), end);

@@ -17,6 +17,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <fstream>
@@ -95,15 +96,15 @@ namespace ACF
       AssertDimension(support.size(), vtk.nodes.size());
       std::vector<unsigned int> order;
       for (const auto &node : vtk.nodes)
-      {
-        const Point<dim> point(node[0] / 2., node[1] / 2., node[2] / 2.);
-        const auto it =
-          std::find_if(support.begin(), support.end(), [&](const auto &p) {
-            return p.distance(point) < 1e-6;
-          });
-        Assert(it != support.end(), ExcInternalError());
-        order.push_back(it - support.begin());
-      }
+        {
+          const Point<dim> point(node[0] / 2., node[1] / 2., node[2] / 2.);
+          const auto it =
+            std::find_if(support.begin(), support.end(), [&](const auto &p) {
+              return p.distance(point) < 1e-6;
+            });
+          Assert(it != support.end(), ExcInternalError());
+          order.push_back(it - support.begin());
+        }
       return order;
     }
 
@@ -143,11 +144,11 @@ namespace ACF
 
 
 
-    template <typename Number, typename Vector>
+    template <typename Number, typename Values>
     std::string
     data_array(const std::string &name,
                const unsigned int n_components,
-               const Vector &values)
+               const Values &values)
     {
       return data_array(name,
                         n_components,
@@ -171,12 +172,12 @@ namespace ACF
       connectivity.reserve(n_cells * order.size());
       std::vector<unsigned int> nodes(order.size());
       for (const auto &cell : body.dof_handler().active_cell_iterators())
-      {
-        body.get_nodes(cell, nodes);
-        for (const unsigned int i : order)
-          connectivity.push_back(nodes[i]);
-        offsets.push_back(connectivity.size());
-      }
+        {
+          body.get_nodes(cell, nodes);
+          for (const unsigned int i : order)
+            connectivity.push_back(nodes[i]);
+          offsets.push_back(connectivity.size());
+        }
 
       return "<Points>\n" +
              data_array<double>("Points", dim, initial_positions) +
@@ -211,23 +212,24 @@ namespace ACF
       std::vector<SymmetricTensor<2, dim>> stresses(space.n_nodes());
 
       for (const auto &cell : space.dof_handler().active_cell_iterators())
-      {
-        values.reinit(typename Triangulation<dim>::active_cell_iterator(cell));
-        space.get_nodes(cell, nodes);
-        for (const unsigned int point : values.quadrature_point_indices())
         {
-          Matrix3 gradient;
-          for (const unsigned int i : values.dof_indices())
-            for (unsigned int c = 0; c < dim; ++c)
-              gradient[c] +=
-                q[dim * nodes[i] + c] * values.shape_grad(i, point);
-          const SymmetricTensor<2, dim> strain = symmetrize(gradient);
-          stresses[nodes[point]] +=
-            lambda * trace(strain) * unit_symmetric_tensor<dim>() +
-            2 * mu * strain;
-          ++n_cells[nodes[point]];
+          values.reinit(
+            typename Triangulation<dim>::active_cell_iterator(cell));
+          space.get_nodes(cell, nodes);
+          for (const unsigned int point : values.quadrature_point_indices())
+            {
+              Matrix3 gradient;
+              for (const unsigned int i : values.dof_indices())
+                for (unsigned int c = 0; c < dim; ++c)
+                  gradient[c] +=
+                    q[dim * nodes[i] + c] * values.shape_grad(i, point);
+              const SymmetricTensor<2, dim> strain = symmetrize(gradient);
+              stresses[nodes[point]] +=
+                lambda * trace(strain) * unit_symmetric_tensor<dim>() +
+                2 * mu * strain;
+              ++n_cells[nodes[point]];
+            }
         }
-      }
       for (unsigned int a = 0; a < space.n_nodes(); ++a)
         stresses[a] /= n_cells[a];
       return stresses;
@@ -311,12 +313,12 @@ namespace ACF
     Assert(parameters.interval > 0,
            ExcMessage("Without an interval there are no VTU files."));
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
-    {
-      const Body &body = system.bodies()[b];
-      initial_positions.push_back(body.initial_positions());
-      geometries.push_back(
-        geometry(body.discretization(), initial_positions.back(), b));
-    }
+      {
+        const Body &body = system.bodies()[b];
+        initial_positions.push_back(body.initial_positions());
+        geometries.push_back(
+          geometry(body.discretization(), initial_positions.back(), b));
+      }
   }
 
 
@@ -332,15 +334,15 @@ namespace ACF
       data_array<double>("displacement", dim, displacement) +
       data_array<float>("velocity", dim, state.velocities[b]);
     if (stress)
-    {
-      const auto values = von_mises_stress(body, state.positions[b]);
-      if (!values)
-        throw SimulationError("The body '" + body.name() + "' at time " +
-                              format_number(state.time) +
-                              " s is so deformed that it has no rotation; "
-                              "its stress cannot be evaluated.");
-      fields += data_array<float>("von_mises_stress", 1, *values);
-    }
+      {
+        const auto values = von_mises_stress(body, state.positions[b]);
+        if (!values)
+          throw SimulationError("The body '" + body.name() + "' at time " +
+                                format_number(state.time) +
+                                " s is so deformed that it has no rotation; "
+                                "its stress cannot be evaluated.");
+        fields += data_array<float>("von_mises_stress", 1, *values);
+      }
 
     return "<Piece NumberOfPoints=\"" +
            std::to_string(body.discretization().n_nodes()) +

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/mechanics/body.h>
 #include <acf/mechanics/mesh_import.h>
 #include <acf/mechanics/reduced_strain.h>
@@ -38,8 +37,8 @@ namespace ACF
       "gradient: by polar decomposition, or (cheaper, as in the paper) from "
       "three material points. Units: none.");
     prm.add_action("Rotation measure", [this](const std::string &value) {
-      rotation_measure = (value == "polar" ? RotationMeasure::polar :
-                                             RotationMeasure::three_points);
+      rotation_measure = (value == "polar" ? RotationMeasure::polar
+                                           : RotationMeasure::three_points);
     });
     prm.add_parameter("Position",
                       position,
@@ -66,12 +65,12 @@ namespace ACF
   {
     mesh.check(section());
     const auto require_positive = [&](const std::string &entry,
-                                      const double       value) {
+                                      const double value) {
       if (!(value > 0))
         throw InputError(section(),
                          entry,
-                         value == 0 ? "nothing or zero" :
-                                      "'" + std::to_string(value) + "'",
+                         value == 0 ? "nothing or zero"
+                                    : "'" + std::to_string(value) + "'",
                          "a positive number");
     };
     require_positive("Young's modulus", material.youngs_modulus);
@@ -85,7 +84,7 @@ namespace ACF
 
 
 
-  Body::Body(const BodyParameters        &parameters,
+  Body::Body(const BodyParameters &parameters,
              const std::filesystem::path &directory)
     : parameters(parameters)
     , finite_elements(std::make_shared<const BodyDiscretization>(
@@ -101,7 +100,7 @@ namespace ACF
   Body::initial_positions() const
   {
     const NodalVector &X = operators().reference_positions;
-    NodalVector        x(X.size());
+    NodalVector x(X.size());
     for (unsigned int a = 0; a < operators().n_nodes; ++a)
       for (unsigned int i = 0; i < dim; ++i)
         {
@@ -117,9 +116,9 @@ namespace ACF
   NodalVector
   Body::initial_velocities() const
   {
-    const NodalVector x      = initial_positions();
-    const Vector3     centre = mass_mean(operators(), x);
-    NodalVector       v(x.size());
+    const NodalVector x  = initial_positions();
+    const Vector3 centre = mass_mean(operators(), x);
+    NodalVector v(x.size());
     for (unsigned int a = 0; a < operators().n_nodes; ++a)
       {
         Vector3 arm;

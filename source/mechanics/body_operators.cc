@@ -6,11 +6,9 @@
 #include <deal.II/base/memory_consumption.h>
 
 #include <deal.II/dofs/dof_tools.h>
-
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/fe_values.h>
-
 #include <deal.II/lac/dynamic_sparsity_pattern.h>
 #include <deal.II/lac/sparsity_tools.h>
 
@@ -23,8 +21,8 @@ namespace ACF
     FESystem<dim>
     quadratic_element(const BodyMesh &mesh)
     {
-      return mesh.is_simplex() ? FESystem<dim>(FE_SimplexP<dim>(2), dim) :
-                                 FESystem<dim>(FE_Q<dim>(2), dim);
+      return mesh.is_simplex() ? FESystem<dim>(FE_SimplexP<dim>(2), dim)
+                               : FESystem<dim>(FE_Q<dim>(2), dim);
     }
 
 
@@ -33,7 +31,7 @@ namespace ACF
     DynamicSparsityPattern
     node_couplings(const BodyDiscretization &body)
     {
-      DynamicSparsityPattern    pattern(body.n_nodes());
+      DynamicSparsityPattern pattern(body.n_nodes());
       std::vector<unsigned int> nodes(body.scalar_element().n_dofs_per_cell());
       for (const auto &cell : body.dof_handler().active_cell_iterators())
         {
@@ -52,7 +50,7 @@ namespace ACF
     make_node_graph(const BodyDiscretization &body)
     {
       const DynamicSparsityPattern pattern = node_couplings(body);
-      const auto                   graph   = std::make_shared<NodeGraph>();
+      const auto graph                     = std::make_shared<NodeGraph>();
       graph->row_start.reserve(body.n_nodes() + 1);
       graph->column.reserve(pattern.n_nonzero_elements());
       graph->row_start.push_back(0);
@@ -69,14 +67,14 @@ namespace ACF
 
     void
     assemble_mass(const BodyDiscretization &body,
-                  const double              density,
-                  ScalarNodeMatrix         &mass_matrix)
+                  const double density,
+                  ScalarNodeMatrix &mass_matrix)
     {
       FEValues<dim> values(body.mesh().mapping(),
                            body.scalar_element(),
                            body.mesh().cell_quadrature(4),
                            update_values | update_JxW_values);
-      const unsigned int        n = values.dofs_per_cell;
+      const unsigned int n = values.dofs_per_cell;
       std::vector<unsigned int> nodes(n);
 
       for (const auto &cell : body.dof_handler().active_cell_iterators())
@@ -102,20 +100,20 @@ namespace ACF
     //            + mu grad(a) . grad(b) I
     void
     assemble_stiffness(const BodyDiscretization &body,
-                       const Material           &material,
-                       BlockNodeMatrix          &stiffness_matrix,
-                       NodalVector              &averaging_vectors,
-                       double                   &volume)
+                       const Material &material,
+                       BlockNodeMatrix &stiffness_matrix,
+                       NodalVector &averaging_vectors,
+                       double &volume)
     {
       FEValues<dim> values(body.mesh().mapping(),
                            body.scalar_element(),
                            body.mesh().cell_quadrature(
                              body.mesh().is_simplex() ? 2 : 4),
                            update_gradients | update_JxW_values);
-      const unsigned int        n = values.dofs_per_cell;
+      const unsigned int n = values.dofs_per_cell;
       std::vector<unsigned int> nodes(n);
-      const double              lambda = material.lambda();
-      const double              mu     = material.mu();
+      const double lambda = material.lambda();
+      const double mu     = material.mu();
 
       for (const auto &cell : body.dof_handler().active_cell_iterators())
         {
@@ -138,8 +136,8 @@ namespace ACF
                   {
                     const Vector3 &grad_a = values.shape_grad(i, q);
                     const Vector3 &grad_b = values.shape_grad(j, q);
-                    const double   dV     = values.JxW(q);
-                    const double   laplace = mu * (grad_a * grad_b) * dV;
+                    const double dV       = values.JxW(q);
+                    const double laplace  = mu * (grad_a * grad_b) * dV;
                     for (unsigned int c = 0; c < dim; ++c)
                       {
                         for (unsigned int d = 0; d < dim; ++d)
@@ -238,7 +236,7 @@ namespace ACF
     renumber_nodes();
 
     positions.reinit(handler.n_dofs());
-    const auto               &points = scalar_element().get_unit_support_points();
+    const auto &points = scalar_element().get_unit_support_points();
     std::vector<unsigned int> nodes(points.size());
     for (const auto &cell : handler.active_cell_iterators())
       {
@@ -260,7 +258,7 @@ namespace ACF
   void
   BodyDiscretization::get_nodes(
     const typename DoFHandler<dim>::active_cell_iterator &cell,
-    std::vector<unsigned int>                            &nodes) const
+    std::vector<unsigned int> &nodes) const
   {
     std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
     cell->get_dof_indices(dofs);
@@ -321,7 +319,7 @@ namespace ACF
 
   BodyOperators
   assemble_body_operators(const BodyDiscretization &body,
-                          const Material           &material)
+                          const Material &material)
   {
     BodyOperators operators(make_node_graph(body));
     operators.reference_positions = body.reference_positions();

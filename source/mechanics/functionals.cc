@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/mechanics/body_operators.h>
 #include <acf/mechanics/functionals.h>
 
@@ -28,9 +27,9 @@ namespace ACF
                          const std::vector<double> &)>;
 
     void
-    for_all_face_points(const BodyDiscretization           &body,
+    for_all_face_points(const BodyDiscretization &body,
                         const std::set<types::boundary_id> &surface,
-                        const FacePointFunction            &function)
+                        const FacePointFunction &function)
     {
       // exact for affine weights times quadratic shape functions
       const auto &element = body.scalar_element();
@@ -40,7 +39,7 @@ namespace ACF
                                update_values | update_quadrature_points |
                                  update_JxW_values);
       std::vector<unsigned int> nodes(element.n_dofs_per_cell());
-      std::vector<double>       phi(element.n_dofs_per_cell());
+      std::vector<double> phi(element.n_dofs_per_cell());
 
       for (const auto &cell : body.dof_handler().active_cell_iterators())
         for (const unsigned int f : cell->face_indices())
@@ -85,22 +84,22 @@ namespace ACF
 
 
     NodalFunctional
-    weighted_mean(const BodyDiscretization                        &body,
-                  const std::set<types::boundary_id>              &surface,
-                  const double                                     area,
+    weighted_mean(const BodyDiscretization &body,
+                  const std::set<types::boundary_id> &surface,
+                  const double area,
                   const std::function<double(const Point<dim> &)> &weight)
     {
       std::map<unsigned int, double> weights;
-      for_all_face_points(
-        body,
-        surface,
-        [&](const Point<dim>                &X,
-            const double                     dA,
-            const std::vector<unsigned int> &nodes,
-            const std::vector<double>       &phi) {
-          for (unsigned int i = 0; i < nodes.size(); ++i)
-            weights[nodes[i]] += weight(X) * phi[i] * dA / area;
-        });
+      for_all_face_points(body,
+                          surface,
+                          [&](const Point<dim> &X,
+                              const double dA,
+                              const std::vector<unsigned int> &nodes,
+                              const std::vector<double> &phi) {
+                            for (unsigned int i = 0; i < nodes.size(); ++i)
+                              weights[nodes[i]] +=
+                                weight(X) * phi[i] * dA / area;
+                          });
       return from_map(weights);
     }
   } // namespace
@@ -167,14 +166,14 @@ namespace ACF
 
 
   SurfaceGeometry
-  surface_geometry(const BodyDiscretization           &body,
+  surface_geometry(const BodyDiscretization &body,
                    const std::set<types::boundary_id> &surface)
   {
     SurfaceGeometry geometry;
     for_all_face_points(body,
                         surface,
                         [&](const Point<dim> &X,
-                            const double      dA,
+                            const double dA,
                             const std::vector<unsigned int> &,
                             const std::vector<double> &) {
                           geometry.area += dA;
@@ -184,23 +183,23 @@ namespace ACF
       throw SimulationError("A surface has no area.");
     geometry.centroid /= geometry.area;
 
-    for_all_face_points(
-      body,
-      surface,
-      [&](const Point<dim> &X,
-          const double      dA,
-          const std::vector<unsigned int> &,
-          const std::vector<double> &) {
-        const Vector3 arm = X - Point<dim>(geometry.centroid);
-        geometry.second_moment += dA / geometry.area * outer_product(arm, arm);
-      });
+    for_all_face_points(body,
+                        surface,
+                        [&](const Point<dim> &X,
+                            const double dA,
+                            const std::vector<unsigned int> &,
+                            const std::vector<double> &) {
+                          const Vector3 arm = X - Point<dim>(geometry.centroid);
+                          geometry.second_moment +=
+                            dA / geometry.area * outer_product(arm, arm);
+                        });
     return geometry;
   }
 
 
 
   NodalFunctional
-  surface_mean(const BodyDiscretization           &body,
+  surface_mean(const BodyDiscretization &body,
                const std::set<types::boundary_id> &surface)
   {
     return weighted_mean(body,
@@ -212,9 +211,9 @@ namespace ACF
 
 
   NodalFunctional
-  surface_moment(const BodyDiscretization           &body,
+  surface_moment(const BodyDiscretization &body,
                  const std::set<types::boundary_id> &surface,
-                 const Vector3                      &v)
+                 const Vector3 &v)
   {
     const SurfaceGeometry geometry = surface_geometry(body, surface);
     return weighted_mean(body,
@@ -228,9 +227,9 @@ namespace ACF
 
 
   NodalFunctional
-  surface_director(const BodyDiscretization           &body,
+  surface_director(const BodyDiscretization &body,
                    const std::set<types::boundary_id> &surface,
-                   const Vector3                      &direction)
+                   const Vector3 &direction)
   {
     const SurfaceGeometry geometry = surface_geometry(body, surface);
     Assert(geometry.resolves(direction),
@@ -289,7 +288,7 @@ namespace ACF
 
   NodalFunctional
   linear_combination(const NodalFunctional &first,
-                     const double           factor,
+                     const double factor,
                      const NodalFunctional &second)
   {
     std::map<unsigned int, double> weights;

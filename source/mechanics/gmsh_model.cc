@@ -66,33 +66,33 @@ namespace ACF
            std::vector<std::size_t> *const numbers)
       {
         for (const ElementBlock &block : blocks)
-        {
-          const ElementType type = element_type(block.type);
-          for (std::size_t e = 0; e < block.tags.size(); ++e)
           {
-            const std::size_t *const tags = &block.nodes[e * type.n_nodes];
-            CellData<structdim> element(type.n_corners);
-            for (int c = 0; c < type.n_corners; ++c)
-              element.vertices[c] = vertex(tags[c], block.tags[e]);
-            if (structdim == dim)
-            {
-              if (type.order > 1)
-                check_straight(type, tags, block.tags[e]);
-              element.material_id = ids.at(block.entity);
-              // counter-clockwise -> lexicographic
-              if (type.n_corners == 8)
+            const ElementType type = element_type(block.type);
+            for (std::size_t e = 0; e < block.tags.size(); ++e)
               {
-                std::swap(element.vertices[2], element.vertices[3]);
-                std::swap(element.vertices[6], element.vertices[7]);
+                const std::size_t *const tags = &block.nodes[e * type.n_nodes];
+                CellData<structdim> element(type.n_corners);
+                for (int c = 0; c < type.n_corners; ++c)
+                  element.vertices[c] = vertex(tags[c], block.tags[e]);
+                if (structdim == dim)
+                  {
+                    if (type.order > 1)
+                      check_straight(type, tags, block.tags[e]);
+                    element.material_id = ids.at(block.entity);
+                    // counter-clockwise -> lexicographic
+                    if (type.n_corners == 8)
+                      {
+                        std::swap(element.vertices[2], element.vertices[3]);
+                        std::swap(element.vertices[6], element.vertices[7]);
+                      }
+                  }
+                else
+                  element.boundary_id = ids.at(block.entity);
+                elements.push_back(element);
+                if (numbers != nullptr)
+                  numbers->push_back(block.tags[e]);
               }
-            }
-            else
-              element.boundary_id = ids.at(block.entity);
-            elements.push_back(element);
-            if (numbers != nullptr)
-              numbers->push_back(block.tags[e]);
           }
-        }
       }
 
     private:
@@ -129,30 +129,30 @@ namespace ACF
           node(tags[0], element)
             .distance(node(tags[type.n_corners - 2], element));
         for (int n = type.n_corners; n < type.n_nodes; ++n)
-        {
-          const double *const xi = &type.node_coordinates[dim * n];
-          Vector3 straight;
-          for (int c = 0; c < type.n_corners; ++c)
           {
-            const double *const corner = &type.node_coordinates[dim * c];
-            double shape               = 1;
-            if (type.n_corners == 4)
-              shape = (c == 0 ? 1 - xi[0] - xi[1] - xi[2] : xi[c - 1]);
-            else
-              for (unsigned int d = 0; d < dim; ++d)
-                shape *= 0.5 * (1 + corner[d] * xi[d]);
-            straight += shape * Vector3(node(tags[c], element));
+            const double *const xi = &type.node_coordinates[dim * n];
+            Vector3 straight;
+            for (int c = 0; c < type.n_corners; ++c)
+              {
+                const double *const corner = &type.node_coordinates[dim * c];
+                double shape               = 1;
+                if (type.n_corners == 4)
+                  shape = (c == 0 ? 1 - xi[0] - xi[1] - xi[2] : xi[c - 1]);
+                else
+                  for (unsigned int d = 0; d < dim; ++d)
+                    shape *= 0.5 * (1 + corner[d] * xi[d]);
+                straight += shape * Vector3(node(tags[c], element));
+              }
+            const Point<dim> &position = node(tags[n], element);
+            if ((Vector3(position) - straight).norm() > tolerance * diameter)
+              throw source.error(
+                "the curved element " + std::to_string(element) +
+                  " of second or higher order, node " +
+                  std::to_string(tags[n]) + " at " + describe_point(position) +
+                  " is not on the straight edge",
+                "straight cells, curved geometry is not supported yet: save "
+                "the mesh with Mesh.ElementOrder = 1");
           }
-          const Point<dim> &position = node(tags[n], element);
-          if ((Vector3(position) - straight).norm() > tolerance * diameter)
-            throw source.error(
-              "the curved element " + std::to_string(element) +
-                " of second or higher order, node " + std::to_string(tags[n]) +
-                " at " + describe_point(position) +
-                " is not on the straight edge",
-              "straight cells, curved geometry is not supported yet: save "
-              "the mesh with Mesh.ElementOrder = 1");
-        }
       }
 
       const MeshSource &source;
@@ -184,26 +184,26 @@ namespace ACF
     gmsh::model::getPhysicalGroups(groups, dimension);
     int largest_tag = 0;
     for (const auto &group : groups)
-    {
-      const int tag = group.second;
-      std::string name;
-      std::vector<int> entities;
-      gmsh::model::getPhysicalName(dimension, tag, name);
-      gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
-      if (name.empty())
-        name = kind + " " + std::to_string(tag);
-      EntityNames members;
-      for (const int entity : entities)
       {
-        names[entity].insert(name);
-        members[entity] = {};
+        const int tag = group.second;
+        std::string name;
+        std::vector<int> entities;
+        gmsh::model::getPhysicalName(dimension, tag, name);
+        gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
+        if (name.empty())
+          name = kind + " " + std::to_string(tag);
+        EntityNames members;
+        for (const int entity : entities)
+          {
+            names[entity].insert(name);
+            members[entity] = {};
+          }
+        if (elements_of(dimension, members).empty())
+          throw source.error("the physical group '" + name + "' (" + kind +
+                               " " + std::to_string(tag) + ") without cells",
+                             "groups that are not empty");
+        largest_tag = std::max(largest_tag, tag);
       }
-      if (elements_of(dimension, members).empty())
-        throw source.error("the physical group '" + name + "' (" + kind + " " +
-                             std::to_string(tag) + ") without cells",
-                           "groups that are not empty");
-      largest_tag = std::max(largest_tag, tag);
-    }
 
     // gmsh does not list groups that have a name only; tags are usually
     // counted upwards, so that looking a little further finds them
@@ -212,14 +212,14 @@ namespace ACF
       if (std::find(groups.begin(),
                     groups.end(),
                     std::make_pair(dimension, tag)) == groups.end())
-      {
-        std::string name;
-        gmsh::model::getPhysicalName(dimension, tag, name);
-        if (!name.empty())
-          throw source.error("the physical group '" + name + "' (" + kind +
-                               " " + std::to_string(tag) + ") without cells",
-                             "groups that are not empty");
-      }
+        {
+          std::string name;
+          gmsh::model::getPhysicalName(dimension, tag, name);
+          if (!name.empty())
+            throw source.error("the physical group '" + name + "' (" + kind +
+                                 " " + std::to_string(tag) + ") without cells",
+                               "groups that are not empty");
+        }
     return names;
   }
 
@@ -240,15 +240,15 @@ namespace ACF
   {
     std::vector<ElementBlock> result;
     for (const auto &entity : names)
-    {
-      std::vector<int> types;
-      std::vector<std::vector<std::size_t>> tags, nodes;
-      gmsh::model::mesh::getElements(
-        types, tags, nodes, dimension, entity.first);
-      for (std::size_t i = 0; i < types.size(); ++i)
-        result.push_back(
-          {entity.first, types[i], std::move(tags[i]), std::move(nodes[i])});
-    }
+      {
+        std::vector<int> types;
+        std::vector<std::vector<std::size_t>> tags, nodes;
+        gmsh::model::mesh::getElements(
+          types, tags, nodes, dimension, entity.first);
+        for (std::size_t i = 0; i < types.size(); ++i)
+          result.push_back(
+            {entity.first, types[i], std::move(tags[i]), std::move(nodes[i])});
+      }
     return result;
   }
 
@@ -286,36 +286,36 @@ namespace ACF
                      const MeshSource &source)
   {
     for (ElementBlock &block : blocks)
-    {
-      const std::size_t n_groups = names.at(block.entity).size();
-      if (n_groups <= 1)
-        continue;
-      const std::size_t n_nodes = block.nodes.size() / block.tags.size();
-      ElementBlock unique{block.entity, block.type, {}, {}};
-      std::map<std::vector<std::size_t>, std::size_t> copies;
-      for (std::size_t e = 0; e < block.tags.size(); ++e)
       {
-        const auto begin = block.nodes.begin() + e * n_nodes;
-        const std::vector<std::size_t> nodes(begin, begin + n_nodes);
-        if (++copies[nodes] > 1)
+        const std::size_t n_groups = names.at(block.entity).size();
+        if (n_groups <= 1)
           continue;
-        unique.tags.push_back(block.tags[e]);
-        unique.nodes.insert(unique.nodes.end(), nodes.begin(), nodes.end());
+        const std::size_t n_nodes = block.nodes.size() / block.tags.size();
+        ElementBlock unique{block.entity, block.type, {}, {}};
+        std::map<std::vector<std::size_t>, std::size_t> copies;
+        for (std::size_t e = 0; e < block.tags.size(); ++e)
+          {
+            const auto begin = block.nodes.begin() + e * n_nodes;
+            const std::vector<std::size_t> nodes(begin, begin + n_nodes);
+            if (++copies[nodes] > 1)
+              continue;
+            unique.tags.push_back(block.tags[e]);
+            unique.nodes.insert(unique.nodes.end(), nodes.begin(), nodes.end());
+          }
+        for (const auto &copy : copies)
+          if (copy.second != n_groups)
+            {
+              std::string groups;
+              for (const std::string &name : names.at(block.entity))
+                groups += (groups.empty() ? "'" : ", '") + name + "'";
+              throw source.error(
+                "the groups " + groups + " share the elementary entity " +
+                  std::to_string(block.entity) + " but not all elements",
+                "in format 2.2, one set of groups per elementary entity; or "
+                "format 4.1");
+            }
+        block = std::move(unique);
       }
-      for (const auto &copy : copies)
-        if (copy.second != n_groups)
-        {
-          std::string groups;
-          for (const std::string &name : names.at(block.entity))
-            groups += (groups.empty() ? "'" : ", '") + name + "'";
-          throw source.error(
-            "the groups " + groups + " share the elementary entity " +
-              std::to_string(block.entity) + " but not all elements",
-            "in format 2.2, one set of groups per elementary entity; or "
-            "format 4.1");
-        }
-      block = std::move(unique);
-    }
   }
 
   void

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/mechanics/joints.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -33,7 +32,7 @@ namespace ACF
       // Index of a functional in the joint.
       unsigned int
       add_functional(const NodalFunctional &functional,
-                     const bool             is_mean_position)
+                     const bool is_mean_position)
       {
         joint.functionals.push_back(body.add_joint_functional(functional));
         joint.is_mean_position.push_back(is_mean_position);
@@ -57,7 +56,7 @@ namespace ACF
             for (unsigned int i = 0; i < dim; ++i)
               joint.matrix(r, dim * p + i) += coefficient[i];
 
-        Eigen::VectorXd   values(dim * n);
+        Eigen::VectorXd values(dim * n);
         const NodalVector x = body.initial_positions();
         for (unsigned int p = 0; p < n; ++p)
           {
@@ -71,8 +70,8 @@ namespace ACF
     private:
       using Row = std::vector<std::pair<unsigned int, Vector3>>;
 
-      Joint           &joint;
-      Body            &body;
+      Joint &joint;
+      Body &body;
       std::vector<Row> rows;
     };
 
@@ -80,8 +79,8 @@ namespace ACF
 
     // Principal directions and values of a symmetric matrix.
     void
-    eigen_decomposition(const Matrix3            &matrix,
-                        std::array<double, dim>  &values,
+    eigen_decomposition(const Matrix3 &matrix,
+                        std::array<double, dim> &values,
                         std::array<Vector3, dim> &vectors)
     {
       Eigen::Matrix3d copy;
@@ -102,33 +101,30 @@ namespace ACF
     // theta = R0 Theta sum_k p_k x (R0^T h_k), Theta = (tr(J) I - J)^-1, with
     // the first moments h_k along the principal directions p_k of the surface.
     void
-    add_mean_rotation(JointBuilder                       &builder,
-                      const Body                         &body,
+    add_mean_rotation(JointBuilder &builder,
+                      const Body &body,
                       const std::set<types::boundary_id> &surface,
-                      const std::vector<Vector3>         &axes)
+                      const std::vector<Vector3> &axes)
     {
       const SurfaceGeometry geometry =
         surface_geometry(body.discretization(), surface);
-      std::array<double, dim>  values;
+      std::array<double, dim> values;
       std::array<Vector3, dim> directions;
       eigen_decomposition(geometry.second_moment, values, directions);
       const double sum = trace(geometry.second_moment);
 
-      std::vector<unsigned int> functional(dim,
-                                           numbers::invalid_unsigned_int);
+      std::vector<unsigned int> functional(dim, numbers::invalid_unsigned_int);
       for (unsigned int k = 0; k < dim; ++k)
         if (values[k] > 1e-10 * sum)
-          functional[k] =
-            builder.add_functional(surface_moment(body.discretization(),
-                                                  surface,
-                                                  directions[k]),
-                                   false);
+          functional[k] = builder.add_functional(
+            surface_moment(body.discretization(), surface, directions[k]),
+            false);
 
       const Matrix3 &R0 = body.placement_rotation();
       for (const Vector3 &axis : axes)
         {
           const Vector3 axis_in_body = transpose(R0) * axis;
-          Vector3       scaled; // Theta R0^T e
+          Vector3 scaled; // Theta R0^T e
           for (unsigned int k = 0; k < dim; ++k)
             scaled += (axis_in_body * directions[k]) / (sum - values[k]) *
                       directions[k];
@@ -147,11 +143,11 @@ namespace ACF
     // The surface may turn by any angle about the axis e: either d_e . t = 0 or
     // d_t . e = 0 for two directions t perpendicular to e.
     void
-    add_hinge(JointBuilder                       &builder,
-              const Body                         &body,
+    add_hinge(JointBuilder &builder,
+              const Body &body,
               const std::set<types::boundary_id> &surface,
-              const std::array<Vector3, 2>       &across,
-              const JointParameters              &parameters)
+              const std::array<Vector3, 2> &across,
+              const JointParameters &parameters)
     {
       const SurfaceGeometry geometry =
         surface_geometry(body.discretization(), surface);
@@ -196,7 +192,7 @@ namespace ACF
     std::array<Vector3, 2>
     perpendicular(const Vector3 &axis)
     {
-      Vector3      t;
+      Vector3 t;
       unsigned int smallest = 0;
       for (unsigned int i = 1; i < dim; ++i)
         if (std::abs(axis[i]) < std::abs(axis[smallest]))
@@ -216,7 +212,7 @@ namespace ACF
                              "Directions",
                              "'" + parameters.directions + "'",
                              direction_form);
-      Vector3          direction;
+      Vector3 direction;
       if (text == "x" || text == "y" || text == "z")
         {
           direction[text[0] - 'x'] = 1;
@@ -312,8 +308,8 @@ namespace ACF
         }
     else
       {
-        const bool letters = directions.find_first_of("xyz") !=
-                             std::string::npos;
+        const bool letters =
+          directions.find_first_of("xyz") != std::string::npos;
         for (const std::string &part :
              Utilities::split_string_list(directions, letters ? ',' : ';'))
           vectors.push_back(parse_direction(part, *this));
@@ -355,9 +351,9 @@ namespace ACF
 
   unsigned int
   find_body(const std::vector<Body> &bodies,
-            const std::string       &name,
-            const std::string       &section,
-            const std::string       &entry)
+            const std::string &name,
+            const std::string &section,
+            const std::string &entry)
   {
     std::string names;
     for (unsigned int b = 0; b < bodies.size(); ++b)
@@ -381,9 +377,9 @@ namespace ACF
     if (sides.size() != 2 || (sides[0] == "ground") == (sides[1] == "ground"))
       throw InputError(parameters.section(),
                        "Between",
-                       parameters.between.empty() ?
-                         "nothing" :
-                         "'" + parameters.between + "'",
+                       parameters.between.empty()
+                         ? "nothing"
+                         : "'" + parameters.between + "'",
                        "a surface and the ground, 'BODY: SURFACE, ground'");
     const SurfaceName name =
       parse_surface_name(sides[0] == "ground" ? sides[1] : sides[0],
@@ -392,14 +388,15 @@ namespace ACF
 
     Joint joint;
     joint.name = parameters.name;
-    joint.body =
-      find_body(bodies, name.body, parameters.section(), "Between");
-    Body       &body    = bodies[joint.body];
-    const auto &surface = body.discretization().mesh().surface(
-      name.surface, parameters.section(), "Between");
+    joint.body = find_body(bodies, name.body, parameters.section(), "Between");
+    Body &body = bodies[joint.body];
+    const auto &surface =
+      body.discretization().mesh().surface(name.surface,
+                                           parameters.section(),
+                                           "Between");
 
     const std::vector<Vector3> directions = parameters.direction_vectors();
-    JointBuilder               builder(joint, body);
+    JointBuilder builder(joint, body);
     if (parameters.type != "mean rotation")
       {
         const unsigned int p =

@@ -7,6 +7,7 @@
 
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/quadrature_lib.h>
+#include <deal.II/base/utilities.h>
 
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/mapping_fe.h>
@@ -259,10 +260,10 @@ namespace ACF
       cell_mapping =
         std::make_unique<const MappingFE<dim>>(FE_SimplexP<dim>(1));
     else
-    {
-      cell_mapping = std::make_unique<const MappingQ<dim>>(1);
-      GridTools::consistently_order_cells(data.cells);
-    }
+      {
+        cell_mapping = std::make_unique<const MappingQ<dim>>(1);
+        GridTools::consistently_order_cells(data.cells);
+      }
     tria.create_triangulation(data.vertices, data.cells, SubCellData());
     set_boundary_ids(data);
   }
@@ -276,13 +277,13 @@ namespace ACF
     for (const auto &cell : tria.active_cell_iterators())
       for (const auto &face : cell->face_iterators())
         if (face->at_boundary())
-        {
-          std::set<unsigned int> vertices;
-          for (const unsigned int v : face->vertex_indices())
-            vertices.insert(face->vertex_index(v));
-          const auto id = ids.find(vertices);
-          face->set_boundary_id(id == ids.end() ? 0 : id->second);
-        }
+          {
+            std::set<unsigned int> vertices;
+            for (const unsigned int v : face->vertex_indices())
+              vertices.insert(face->vertex_index(v));
+            const auto id = ids.find(vertices);
+            face->set_boundary_id(id == ids.end() ? 0 : id->second);
+          }
   }
 
   const Triangulation<dim> &
@@ -377,11 +378,11 @@ namespace ACF
                          parameters.mesh_size,
                          source);
     if (parameters.mirror != "none")
-    {
-      // before, to count what is wrong once only
-      check_cells(data, source);
-      mirror_mesh(data, parameters.mirror[0] - 'x', source);
-    }
+      {
+        // before, to count what is wrong once only
+        check_cells(data, source);
+        mirror_mesh(data, parameters.mirror[0] - 'x', source);
+      }
     return std::make_unique<const BodyMesh>(std::move(data), source);
   }
 } // namespace ACF

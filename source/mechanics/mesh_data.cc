@@ -45,15 +45,15 @@ namespace ACF
       std::vector<std::pair<FaceKey, unsigned int>> table;
       for (unsigned int c = 0; c < data.cells.size(); ++c)
         for (const unsigned int f : reference_cell.face_indices())
-        {
-          const auto n = reference_cell.face_reference_cell(f).n_vertices();
-          std::vector<unsigned int> vertices(n);
-          for (unsigned int v = 0; v < n; ++v)
-            vertices[v] =
-              data.cells[c]
-                .vertices[reference_cell.face_to_cell_vertices(f, v, 1)];
-          table.emplace_back(make_key(vertices), c);
-        }
+          {
+            const auto n = reference_cell.face_reference_cell(f).n_vertices();
+            std::vector<unsigned int> vertices(n);
+            for (unsigned int v = 0; v < n; ++v)
+              vertices[v] =
+                data.cells[c]
+                  .vertices[reference_cell.face_to_cell_vertices(f, v, 1)];
+            table.emplace_back(make_key(vertices), c);
+          }
       std::sort(table.begin(), table.end());
       return table;
     }
@@ -68,17 +68,17 @@ namespace ACF
       Tensor<2, dim> columns; // one per row
       for (unsigned int v = 0; v < 8; ++v)
         for (unsigned int d = 0; d < dim; ++d)
-        {
-          double derivative = 1;
-          for (unsigned int e = 0; e < dim; ++e)
           {
-            const bool upper = ((v >> e) & 1U) != 0;
-            derivative *=
-              (e == d ? (upper ? 1. : -1.) : (upper ? xi[e] : 1 - xi[e]));
+            double derivative = 1;
+            for (unsigned int e = 0; e < dim; ++e)
+              {
+                const bool upper = ((v >> e) & 1U) != 0;
+                derivative *=
+                  (e == d ? (upper ? 1. : -1.) : (upper ? xi[e] : 1 - xi[e]));
+              }
+            columns[d] +=
+              derivative * Vector3(data.vertices[hexahedron.vertices[v]]);
           }
-          columns[d] +=
-            derivative * Vector3(data.vertices[hexahedron.vertices[v]]);
-        }
       const double lengths =
         columns[0].norm() * columns[1].norm() * columns[2].norm();
       return lengths > 0 ? determinant(columns) / lengths : 0.;
@@ -90,17 +90,19 @@ namespace ACF
     cell_quality(const MeshData &data, const CellData<dim> &cell)
     {
       if (data.reference_cell == ReferenceCells::Hexahedron)
-      {
-        double quality = 1;
-        for (unsigned int p = 0; p < 27; ++p)
         {
-          const Point<dim> xi(0.5 * (p % 3), 0.5 * (p / 3 % 3), 0.5 * (p / 9));
-          const double jacobian = relative_jacobian(data, cell, xi);
-          // in this order, not-a-number is the worst of all
-          quality = (jacobian >= quality ? quality : jacobian);
+          double quality = 1;
+          for (unsigned int p = 0; p < 27; ++p)
+            {
+              const Point<dim> xi(0.5 * (p % 3),
+                                  0.5 * (p / 3 % 3),
+                                  0.5 * (p / 9));
+              const double jacobian = relative_jacobian(data, cell, xi);
+              // in this order, not-a-number is the worst of all
+              quality = (jacobian >= quality ? quality : jacobian);
+            }
+          return quality;
         }
-        return quality;
-      }
 
       const auto vertex = [&](const unsigned int v) {
         return Vector3(data.vertices[cell.vertices[v % 4]]);
@@ -121,10 +123,10 @@ namespace ACF
     {
       std::vector<std::pair<std::vector<unsigned int>, unsigned int>> cells;
       for (unsigned int c = 0; c < data.cells.size(); ++c)
-      {
-        cells.emplace_back(data.cells[c].vertices, c);
-        std::sort(cells.back().first.begin(), cells.back().first.end());
-      }
+        {
+          cells.emplace_back(data.cells[c].vertices, c);
+          std::sort(cells.back().first.begin(), cells.back().first.end());
+        }
       std::sort(cells.begin(), cells.end());
       for (std::size_t i = 1; i < cells.size(); ++i)
         if (cells[i - 1].first == cells[i].first)
@@ -188,32 +190,32 @@ namespace ACF
       std::vector<std::vector<unsigned int>> neighbors(data.cells.size());
       for (std::size_t i = 1; i < table.size(); ++i)
         if (table[i].first == table[i - 1].first)
-        {
-          neighbors[table[i].second].push_back(table[i - 1].second);
-          neighbors[table[i - 1].second].push_back(table[i].second);
-        }
+          {
+            neighbors[table[i].second].push_back(table[i - 1].second);
+            neighbors[table[i - 1].second].push_back(table[i].second);
+          }
       std::vector<unsigned int> parts(data.cells.size(),
                                       numbers::invalid_unsigned_int);
       unsigned int n_parts = 0;
       for (unsigned int seed = 0; seed < parts.size(); ++seed)
-      {
-        if (parts[seed] != numbers::invalid_unsigned_int)
-          continue;
-        std::vector<unsigned int> stack = {seed};
-        parts[seed]                     = n_parts;
-        while (!stack.empty())
         {
-          const unsigned int cell = stack.back();
-          stack.pop_back();
-          for (const unsigned int neighbor : neighbors[cell])
-            if (parts[neighbor] == numbers::invalid_unsigned_int)
+          if (parts[seed] != numbers::invalid_unsigned_int)
+            continue;
+          std::vector<unsigned int> stack = {seed};
+          parts[seed]                     = n_parts;
+          while (!stack.empty())
             {
-              parts[neighbor] = n_parts;
-              stack.push_back(neighbor);
+              const unsigned int cell = stack.back();
+              stack.pop_back();
+              for (const unsigned int neighbor : neighbors[cell])
+                if (parts[neighbor] == numbers::invalid_unsigned_int)
+                  {
+                    parts[neighbor] = n_parts;
+                    stack.push_back(neighbor);
+                  }
             }
+          ++n_parts;
         }
-        ++n_parts;
-      }
       return parts;
     }
 
@@ -231,33 +233,34 @@ namespace ACF
       std::vector<CellData<dim - 1>> boundary_faces;
       std::map<FaceKey, types::boundary_id> known;
       for (const CellData<dim - 1> &face : data.faces)
-      {
-        const FaceKey key = make_key(face.vertices);
-        const auto first =
-          std::lower_bound(table.begin(), table.end(), std::make_pair(key, 0U));
-        std::size_t n_cells = 0;
-        for (auto i = first; i != table.end() && i->first == key; ++i)
-          ++n_cells;
-        if (n_cells != 1 && data.surfaces_of_geometry)
-          continue;
+        {
+          const FaceKey key   = make_key(face.vertices);
+          const auto first    = std::lower_bound(table.begin(),
+                                              table.end(),
+                                              std::make_pair(key, 0U));
+          std::size_t n_cells = 0;
+          for (auto i = first; i != table.end() && i->first == key; ++i)
+            ++n_cells;
+          if (n_cells != 1 && data.surfaces_of_geometry)
+            continue;
 
-        const std::string where =
-          "with a face at " + describe_point(centre(data, face.vertices));
-        if (n_cells != 1)
-          throw source.error("surface " + names[face.boundary_id] + " " +
-                               where +
-                               (n_cells == 0
-                                  ? " that is no face of a cell"
-                                  : " inside the body, between two cells"),
-                             "faces on the boundary of the body");
-        const auto [entry, is_new] = known.try_emplace(key, face.boundary_id);
-        if (!is_new && entry->second != face.boundary_id)
-          throw source.error(
-            "surfaces " + names[entry->second] + " and " +
-              names[face.boundary_id] + " " + where + " that is listed twice",
-            "each face once, in an entity with several groups");
-        boundary_faces.push_back(face);
-      }
+          const std::string where =
+            "with a face at " + describe_point(centre(data, face.vertices));
+          if (n_cells != 1)
+            throw source.error("surface " + names[face.boundary_id] + " " +
+                                 where +
+                                 (n_cells == 0
+                                    ? " that is no face of a cell"
+                                    : " inside the body, between two cells"),
+                               "faces on the boundary of the body");
+          const auto [entry, is_new] = known.try_emplace(key, face.boundary_id);
+          if (!is_new && entry->second != face.boundary_id)
+            throw source.error(
+              "surfaces " + names[entry->second] + " and " +
+                names[face.boundary_id] + " " + where + " that is listed twice",
+              "each face once, in an entity with several groups");
+          boundary_faces.push_back(face);
+        }
       data.faces = std::move(boundary_faces);
     }
   } // namespace
@@ -291,13 +294,13 @@ namespace ACF
     constexpr double smallest_quality = 1e-6;
     std::vector<unsigned int> inverted, degenerate;
     for (unsigned int c = 0; c < data.cells.size(); ++c)
-    {
-      const double quality = cell_quality(data, data.cells[c]);
-      if (quality < -smallest_quality)
-        inverted.push_back(c);
-      else if (!(quality > smallest_quality))
-        degenerate.push_back(c);
-    }
+      {
+        const double quality = cell_quality(data, data.cells[c]);
+        if (quality < -smallest_quality)
+          inverted.push_back(c);
+        else if (!(quality > smallest_quality))
+          degenerate.push_back(c);
+      }
     if (!inverted.empty())
       throw source.error(std::to_string(inverted.size()) +
                            " inverted cells (with negative volume, or with "
@@ -328,20 +331,20 @@ namespace ACF
     for (unsigned int c = 0; c < part_of_cell.size(); ++c)
       ++parts.try_emplace(part_of_cell[c], 0, c).first->second.first;
     if (parts.size() > 1)
-    {
-      std::string list;
-      for (const auto &part : parts)
-        if (part.first < 3)
-          list += (part.first > 0 ? "; " : "") +
-                  std::to_string(part.second.first) + " cells from " +
-                  describe_cell(data, part.second.second);
-      throw source.error(std::to_string(parts.size()) +
-                           " parts that no common face connects: " + list +
-                           (parts.size() > 3 ? "; ..." : ""),
-                         "one connected body, whose parts share the vertices "
-                         "of common faces (Coherence or BooleanFragments in "
-                         "gmsh)");
-    }
+      {
+        std::string list;
+        for (const auto &part : parts)
+          if (part.first < 3)
+            list += (part.first > 0 ? "; " : "") +
+                    std::to_string(part.second.first) + " cells from " +
+                    describe_cell(data, part.second.second);
+        throw source.error(std::to_string(parts.size()) +
+                             " parts that no common face connects: " + list +
+                             (parts.size() > 3 ? "; ..." : ""),
+                           "one connected body, whose parts share the vertices "
+                           "of common faces (Coherence or BooleanFragments in "
+                           "gmsh)");
+      }
   }
 
   void
@@ -369,10 +372,10 @@ namespace ACF
     std::vector<Point<dim>> vertices;
     for (unsigned int v = 0; v < data.vertices.size(); ++v)
       if (new_index[v] == 0)
-      {
-        new_index[v] = vertices.size();
-        vertices.push_back(data.vertices[v]);
-      }
+        {
+          new_index[v] = vertices.size();
+          vertices.push_back(data.vertices[v]);
+        }
     data.vertices = std::move(vertices);
     for (CellData<dim> &cell : data.cells)
       for (unsigned int &vertex : cell.vertices)

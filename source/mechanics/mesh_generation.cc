@@ -57,36 +57,36 @@ namespace ACF
           data.vertices.push_back(place(point, layer));
 
       for (unsigned int layer = 0; layer < n_layers; ++layer)
-      {
-        const unsigned int below = layer * n_points;
-        const unsigned int above = below + n_points;
-        for (const auto &quadrilateral : section.quadrilaterals)
         {
-          CellData<dim> cell(8);
-          for (unsigned int v = 0; v < 4; ++v)
-          {
-            cell.vertices[v]     = below + quadrilateral[v];
-            cell.vertices[v + 4] = above + quadrilateral[v];
-          }
-          cell.material_id = 1;
-          data.cells.push_back(cell);
+          const unsigned int below = layer * n_points;
+          const unsigned int above = below + n_points;
+          for (const auto &quadrilateral : section.quadrilaterals)
+            {
+              CellData<dim> cell(8);
+              for (unsigned int v = 0; v < 4; ++v)
+                {
+                  cell.vertices[v]     = below + quadrilateral[v];
+                  cell.vertices[v + 4] = above + quadrilateral[v];
+                }
+              cell.material_id = 1;
+              data.cells.push_back(cell);
+            }
+          for (const auto &[ends, id] : section.lines)
+            data.faces.push_back(make_face({below + ends[0],
+                                            below + ends[1],
+                                            above + ends[0],
+                                            above + ends[1]},
+                                           id));
         }
-        for (const auto &[ends, id] : section.lines)
-          data.faces.push_back(make_face({below + ends[0],
-                                          below + ends[1],
-                                          above + ends[0],
-                                          above + ends[1]},
-                                         id));
-      }
 
       const unsigned int last = n_layers * n_points;
       for (const auto &q : section.quadrilaterals)
-      {
-        data.faces.push_back(make_face({q[0], q[1], q[2], q[3]}, start_id));
-        data.faces.push_back(
-          make_face({last + q[0], last + q[1], last + q[2], last + q[3]},
-                    end_id));
-      }
+        {
+          data.faces.push_back(make_face({q[0], q[1], q[2], q[3]}, start_id));
+          data.faces.push_back(
+            make_face({last + q[0], last + q[1], last + q[2], last + q[3]},
+                      end_id));
+        }
       data.regions["body"] = {1};
       return data;
     }
@@ -124,32 +124,35 @@ namespace ACF
       };
 
       for (const CellData<dim> &hexahedron : hexahedra.cells)
-      {
-        const unsigned int cell_centre = centre_of(hexahedron.vertices);
-        for (const unsigned int f : GeometryInfo<dim>::face_indices())
         {
-          std::vector<unsigned int> face(4);
-          for (unsigned int v = 0; v < 4; ++v)
-            face[v] =
-              hexahedron
-                .vertices[GeometryInfo<dim>::face_to_cell_vertices(f, v)];
-          const unsigned int centre = face_centre(face);
-          for (const auto &line : lines)
-          {
-            CellData<dim> cell(4);
-            cell.material_id = hexahedron.material_id;
-            cell.vertices = {face[line[0]], face[line[1]], centre, cell_centre};
-            const Point<dim> &origin = data.vertices[cell.vertices[0]];
-            const Vector3 normal =
-              cross_product_3d(Vector3(data.vertices[cell.vertices[1]] -
-                                       origin),
-                               Vector3(data.vertices[centre] - origin));
-            if (normal * (data.vertices[cell_centre] - origin) < 0)
-              std::swap(cell.vertices[0], cell.vertices[1]);
-            data.cells.push_back(cell);
-          }
+          const unsigned int cell_centre = centre_of(hexahedron.vertices);
+          for (const unsigned int f : GeometryInfo<dim>::face_indices())
+            {
+              std::vector<unsigned int> face(4);
+              for (unsigned int v = 0; v < 4; ++v)
+                face[v] =
+                  hexahedron
+                    .vertices[GeometryInfo<dim>::face_to_cell_vertices(f, v)];
+              const unsigned int centre = face_centre(face);
+              for (const auto &line : lines)
+                {
+                  CellData<dim> cell(4);
+                  cell.material_id         = hexahedron.material_id;
+                  cell.vertices            = {face[line[0]],
+                                              face[line[1]],
+                                              centre,
+                                              cell_centre};
+                  const Point<dim> &origin = data.vertices[cell.vertices[0]];
+                  const Vector3 normal =
+                    cross_product_3d(Vector3(data.vertices[cell.vertices[1]] -
+                                             origin),
+                                     Vector3(data.vertices[centre] - origin));
+                  if (normal * (data.vertices[cell_centre] - origin) < 0)
+                    std::swap(cell.vertices[0], cell.vertices[1]);
+                  data.cells.push_back(cell);
+                }
+            }
         }
-      }
       for (const CellData<dim - 1> &face : hexahedra.faces)
         for (const auto &line : lines)
           data.faces.push_back(make_face({face.vertices[line[0]],
@@ -201,16 +204,16 @@ namespace ACF
       CrossSection disc;
       for (unsigned int j = 0; j <= n_square; ++j)
         for (unsigned int i = 0; i <= n_square; ++i)
-        {
-          const Point<2> square(spacing(i), spacing(j));
-          const double radius = square.norm();
-          const double shell =
-            std::max(std::abs(square[0]), std::abs(square[1]));
-          const double circle =
-            (radius > 0 ? std::sqrt(2.) * shell / radius : 1.);
-          disc.points.push_back(
-            Point<2>(scale * (1 - bulge + bulge * circle) * square));
-        }
+          {
+            const Point<2> square(spacing(i), spacing(j));
+            const double radius = square.norm();
+            const double shell =
+              std::max(std::abs(square[0]), std::abs(square[1]));
+            const double circle =
+              (radius > 0 ? std::sqrt(2.) * shell / radius : 1.);
+            disc.points.push_back(
+              Point<2>(scale * (1 - bulge + bulge * circle) * square));
+          }
       for (unsigned int j = 0; j < n_square; ++j)
         for (unsigned int i = 0; i < n_square; ++i)
           disc.quadrilaterals.push_back({{point_of_square(i, j),
@@ -222,26 +225,26 @@ namespace ACF
       const std::vector<unsigned int> square_side = inner;
       const std::size_t n_around                  = inner.size();
       for (unsigned int ring = 1; ring <= n_rings; ++ring)
-      {
-        std::vector<unsigned int> outer;
-        const double fraction = static_cast<double>(ring) / n_rings;
-        for (const unsigned int p : square_side)
         {
-          const double radius = disc.points[p].norm();
-          outer.push_back(disc.points.size());
-          disc.points.push_back(
-            Point<2>(disc.points[p] * ((1 - fraction) + fraction / radius)));
+          std::vector<unsigned int> outer;
+          const double fraction = static_cast<double>(ring) / n_rings;
+          for (const unsigned int p : square_side)
+            {
+              const double radius = disc.points[p].norm();
+              outer.push_back(disc.points.size());
+              disc.points.push_back(Point<2>(
+                disc.points[p] * ((1 - fraction) + fraction / radius)));
+            }
+          for (std::size_t p = 0; p < n_around; ++p)
+            {
+              const std::size_t next = (p + 1) % n_around;
+              disc.quadrilaterals.push_back(
+                {{inner[p], outer[p], inner[next], outer[next]}});
+              if (ring == n_rings)
+                disc.lines.push_back({{{outer[p], outer[next]}}, 3});
+            }
+          inner = outer;
         }
-        for (std::size_t p = 0; p < n_around; ++p)
-        {
-          const std::size_t next = (p + 1) % n_around;
-          disc.quadrilaterals.push_back(
-            {{inner[p], outer[p], inner[next], outer[next]}});
-          if (ring == n_rings)
-            disc.lines.push_back({{{outer[p], outer[next]}}, 3});
-        }
-        inner = outer;
-      }
       return disc;
     }
   } // namespace
@@ -271,17 +274,17 @@ namespace ACF
                                              point(i, j + 1),
                                              point(i + 1, j + 1)}});
     for (unsigned int j = 0; j < n_cells[1]; ++j)
-    {
-      rectangle.lines.push_back({{{point(0, j), point(0, j + 1)}}, 1});
-      rectangle.lines.push_back(
-        {{{point(n_cells[0], j), point(n_cells[0], j + 1)}}, 2});
-    }
+      {
+        rectangle.lines.push_back({{{point(0, j), point(0, j + 1)}}, 1});
+        rectangle.lines.push_back(
+          {{{point(n_cells[0], j), point(n_cells[0], j + 1)}}, 2});
+      }
     for (unsigned int i = 0; i < n_cells[0]; ++i)
-    {
-      rectangle.lines.push_back({{{point(i, 0), point(i + 1, 0)}}, 3});
-      rectangle.lines.push_back(
-        {{{point(i, n_cells[1]), point(i + 1, n_cells[1])}}, 4});
-    }
+      {
+        rectangle.lines.push_back({{{point(i, 0), point(i + 1, 0)}}, 3});
+        rectangle.lines.push_back(
+          {{{point(i, n_cells[1]), point(i + 1, n_cells[1])}}, 4});
+      }
 
     MeshData data = extrude(
       rectangle,
@@ -343,13 +346,13 @@ namespace ACF
     for (const CellData<dim - 1> &face : data.faces)
       for (const unsigned int vertex : face.vertices)
         if (face.boundary_id == 3 && vertex >= n_vertices)
-        {
-          const Vector3 distance = data.vertices[vertex] - from;
-          const Vector3 axial    = (distance * axis) * axis;
-          const Vector3 radial   = distance - axial;
-          data.vertices[vertex] =
-            from + axial + radius / radial.norm() * radial;
-        }
+          {
+            const Vector3 distance = data.vertices[vertex] - from;
+            const Vector3 axial    = (distance * axis) * axis;
+            const Vector3 radial   = distance - axial;
+            data.vertices[vertex] =
+              from + axial + radius / radial.norm() * radial;
+          }
     return data;
   }
 } // namespace ACF

@@ -45,18 +45,18 @@ namespace ACF
         std::string result;
         bool escape = false;
         for (const char c : captured.str())
-        {
-          escape = (escape || c == '\033');
-          if (!escape && c != '*')
           {
-            if (!std::isspace(static_cast<unsigned char>(c)))
-              result += c;
-            else if (!result.empty() && result.back() != ' ')
-              result += ' ';
+            escape = (escape || c == '\033');
+            if (!escape && c != '*')
+              {
+                if (!std::isspace(static_cast<unsigned char>(c)))
+                  result += c;
+                else if (!result.empty() && result.back() != ' ')
+                  result += ' ';
+              }
+            if (c == 'm')
+              escape = false;
           }
-          if (c == 'm')
-            escape = false;
-        }
         return result;
       }
 
@@ -74,16 +74,16 @@ namespace ACF
     {
       std::string line, first, version, last;
       while (std::getline(stream, line))
-      {
-        if (line.find_first_not_of(" \t\r") == std::string::npos)
-          continue;
-        if (first.empty())
         {
-          first = line;
-          stream >> version;
+          if (line.find_first_not_of(" \t\r") == std::string::npos)
+            continue;
+          if (first.empty())
+            {
+              first = line;
+              stream >> version;
+            }
+          last = line;
         }
-        last = line;
-      }
       if (first.rfind("$MeshFormat", 0) != 0)
         throw source.error("no line $MeshFormat at the start", not_a_mesh);
       if (version != "2.2" && version != "4.1")
@@ -113,12 +113,12 @@ namespace ACF
          const double mesh_size)
     {
       if (kind == MeshFileKind::cad || kind == MeshFileKind::cad_with_unit)
-      {
-        gmsh::vectorpair shapes;
-        gmsh::option::setString("Geometry.OCCTargetUnit", "MM");
-        gmsh::model::occ::importShapes(file.string(), shapes);
-        gmsh::model::occ::synchronize();
-      }
+        {
+          gmsh::vectorpair shapes;
+          gmsh::option::setString("Geometry.OCCTargetUnit", "MM");
+          gmsh::model::occ::importShapes(file.string(), shapes);
+          gmsh::model::occ::synchronize();
+        }
       else
         gmsh::open(file.string());
       if (kind == MeshFileKind::mesh)
@@ -126,10 +126,10 @@ namespace ACF
 
       // after the script, to override it
       if (mesh_size > 0)
-      {
-        gmsh::option::setNumber("Mesh.MeshSizeMax", mesh_size);
-        gmsh::model::mesh::clear();
-      }
+        {
+          gmsh::option::setNumber("Mesh.MeshSizeMax", mesh_size);
+          gmsh::model::mesh::clear();
+        }
       std::vector<int> types;
       std::vector<std::vector<std::size_t>> tags, nodes;
       gmsh::model::mesh::getElements(types, tags, nodes, dim);
@@ -145,13 +145,13 @@ namespace ACF
       std::map<std::set<std::string>, unsigned int> sets;
       std::map<int, unsigned int> ids;
       for (const auto &[entity, entity_names] : entities)
-      {
-        const unsigned int id =
-          sets.try_emplace(entity_names, sets.size() + 1).first->second;
-        ids[entity] = id;
-        for (const std::string &name : entity_names)
-          names[name].insert(id);
-      }
+        {
+          const unsigned int id =
+            sets.try_emplace(entity_names, sets.size() + 1).first->second;
+          ids[entity] = id;
+          for (const std::string &name : entity_names)
+            names[name].insert(id);
+        }
       return ids;
     }
 
@@ -197,10 +197,10 @@ namespace ACF
       if (volumes.empty())
         volumes = geometric_entities(dim);
       if (surfaces.empty())
-      {
-        surfaces                  = geometric_entities(dim - 1);
-        data.surfaces_of_geometry = true;
-      }
+        {
+          surfaces                  = geometric_entities(dim - 1);
+          data.surfaces_of_geometry = true;
+        }
 
       std::vector<ElementBlock> cells = elements_of(dim, volumes);
       std::vector<ElementBlock> faces = elements_of(dim - 1, surfaces);
@@ -219,10 +219,10 @@ namespace ACF
                                  std::to_string(volume.first),
                                "geometries that gmsh can mesh");
       if (repeats_elements)
-      {
-        remove_repetitions(cells, volumes, source);
-        remove_repetitions(faces, surfaces, source);
-      }
+        {
+          remove_repetitions(cells, volumes, source);
+          remove_repetitions(faces, surfaces, source);
+        }
       check_element_types(cells, reference_cell, source);
 
       const auto cell_ids = assign_ids(volumes, data.regions);
@@ -276,19 +276,19 @@ namespace ACF
     const GmshSession session;
     const CapturedOutput output;
     try
-    {
-      load(file, kind, mesh_size / scale);
-      return read_model(reference_cell,
-                        scale,
-                        kind != MeshFileKind::mesh,
-                        repeats_elements,
-                        source);
-    }
+      {
+        load(file, kind, mesh_size / scale);
+        return read_model(reference_cell,
+                          scale,
+                          kind != MeshFileKind::mesh,
+                          repeats_elements,
+                          source);
+      }
     catch (const std::string &message) // gmsh throws strings
-    {
-      throw source.error("gmsh says: " + message +
-                           (output.text().empty() ? "" : " " + output.text()),
-                         "files that gmsh can read and mesh");
-    }
+      {
+        throw source.error("gmsh says: " + message +
+                             (output.text().empty() ? "" : " " + output.text()),
+                           "files that gmsh can read and mesh");
+      }
   }
 } // namespace ACF

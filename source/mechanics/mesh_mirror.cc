@@ -33,43 +33,43 @@ namespace ACF
       Point<dim> lower = vertices.front(), upper = lower;
       for (const Point<dim> &vertex : vertices)
         for (unsigned int d = 0; d < dim; ++d)
-        {
-          lower[d] = std::min(lower[d], vertex[d]);
-          upper[d] = std::max(upper[d], vertex[d]);
-        }
+          {
+            lower[d] = std::min(lower[d], vertex[d]);
+            upper[d] = std::max(upper[d], vertex[d]);
+          }
       const double tolerance = 1e-7 * lower.distance(upper);
       if (lower[axis] < -tolerance && upper[axis] > tolerance)
-      {
-        const auto [first, last] =
-          std::minmax_element(vertices.begin(),
-                              vertices.end(),
-                              [&](const auto &a, const auto &b) {
-                                return a[axis] < b[axis];
-                              });
-        throw mirror_error(source,
-                           "vertices on both sides of the plane " + plane +
-                             ": " + describe_point(*first) + " and " +
-                             describe_point(*last),
-                           "half a body, on one side of the plane");
-      }
+        {
+          const auto [first, last] =
+            std::minmax_element(vertices.begin(),
+                                vertices.end(),
+                                [&](const auto &a, const auto &b) {
+                                  return a[axis] < b[axis];
+                                });
+          throw mirror_error(source,
+                             "vertices on both sides of the plane " + plane +
+                               ": " + describe_point(*first) + " and " +
+                               describe_point(*last),
+                             "half a body, on one side of the plane");
+        }
 
       const unsigned int n_vertices = vertices.size();
       std::vector<unsigned int> image(n_vertices);
       unsigned int n_on_plane = 0;
       for (unsigned int v = 0; v < n_vertices; ++v)
-      {
-        Point<dim> vertex = vertices[v];
-        image[v]          = v;
-        if (std::abs(vertex[axis]) <= tolerance)
         {
-          vertices[v][axis] = 0;
-          ++n_on_plane;
-          continue;
+          Point<dim> vertex = vertices[v];
+          image[v]          = v;
+          if (std::abs(vertex[axis]) <= tolerance)
+            {
+              vertices[v][axis] = 0;
+              ++n_on_plane;
+              continue;
+            }
+          vertex[axis] = -vertex[axis];
+          image[v]     = vertices.size();
+          vertices.push_back(vertex);
         }
-        vertex[axis] = -vertex[axis];
-        image[v]     = vertices.size();
-        vertices.push_back(vertex);
-      }
       if (n_on_plane < 3)
         throw mirror_error(source,
                            std::to_string(n_on_plane) +
@@ -94,26 +94,26 @@ namespace ACF
         if (std::any_of(face.vertices.begin(),
                         face.vertices.end(),
                         [&](const unsigned int v) { return image[v] != v; }))
-        {
-          faces.push_back(face);
-          used_ids.insert(face.boundary_id);
-          for (unsigned int &vertex : face.vertices)
-            vertex = image[vertex];
-          face.boundary_id += offset;
-          faces.push_back(face);
-        }
+          {
+            faces.push_back(face);
+            used_ids.insert(face.boundary_id);
+            for (unsigned int &vertex : face.vertices)
+              vertex = image[vertex];
+            face.boundary_id += offset;
+            faces.push_back(face);
+          }
       data.faces = std::move(faces);
 
       const auto surfaces = data.surfaces;
       for (const auto &[name, ids] : surfaces)
-      {
-        if (surfaces.count(name + " mirrored") > 0)
-          throw mirror_error(source,
-                             "a surface '" + name + " mirrored'",
-                             "names that mirrored surfaces do not get");
-        for (const types::boundary_id id : ids)
-          data.surfaces[name + " mirrored"].insert(id + offset);
-      }
+        {
+          if (surfaces.count(name + " mirrored") > 0)
+            throw mirror_error(source,
+                               "a surface '" + name + " mirrored'",
+                               "names that mirrored surfaces do not get");
+          for (const types::boundary_id id : ids)
+            data.surfaces[name + " mirrored"].insert(id + offset);
+        }
       drop_empty_surfaces(data);
     }
   } // namespace
@@ -126,16 +126,16 @@ namespace ACF
 
     const std::size_t n_cells = data.cells.size();
     for (std::size_t c = 0; c < n_cells; ++c)
-    {
-      CellData<dim> cell = data.cells[c];
-      for (unsigned int &vertex : cell.vertices)
-        vertex = image[vertex];
-      // a mirrored cell is inverted unless its numbering is mirrored too
-      std::swap(cell.vertices[0], cell.vertices[1]);
-      for (unsigned int v = 2; cell.vertices.size() == 8 && v < 8; v += 2)
-        std::swap(cell.vertices[v], cell.vertices[v + 1]);
-      data.cells.push_back(cell);
-    }
+      {
+        CellData<dim> cell = data.cells[c];
+        for (unsigned int &vertex : cell.vertices)
+          vertex = image[vertex];
+        // a mirrored cell is inverted unless its numbering is mirrored too
+        std::swap(cell.vertices[0], cell.vertices[1]);
+        for (unsigned int v = 2; cell.vertices.size() == 8 && v < 8; v += 2)
+          std::swap(cell.vertices[v], cell.vertices[v + 1]);
+        data.cells.push_back(cell);
+      }
     if (!data.cell_numbers.empty())
       for (std::size_t c = 0; c < n_cells; ++c)
         data.cell_numbers.push_back(data.cell_numbers[c]);

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/mechanics/multibody_system.h>
 #include <acf/mechanics/reduced_strain.h>
 
@@ -22,11 +21,10 @@ namespace ACF
 
 
 
-  MultibodySystem::MultibodySystem(
-    const std::vector<BodyParameters>  &bodies,
-    const std::vector<JointParameters> &joints,
-    const LoadParameters               &loads,
-    const std::filesystem::path        &directory)
+  MultibodySystem::MultibodySystem(const std::vector<BodyParameters> &bodies,
+                                   const std::vector<JointParameters> &joints,
+                                   const LoadParameters &loads,
+                                   const std::filesystem::path &directory)
     : gravity_acceleration(loads.gravity)
   {
     for (const BodyParameters &parameters : bodies)
@@ -46,9 +44,10 @@ namespace ACF
 
     right_hand_side.resize(n_rows);
     for (unsigned int b = 0; b < system_bodies.size(); ++b)
-      body_constraints[b].matrix = Eigen::MatrixXd::Zero(
-        body_constraints[b].rows.size(),
-        dim * system_bodies[b].joint_functionals().size());
+      body_constraints[b].matrix =
+        Eigen::MatrixXd::Zero(body_constraints[b].rows.size(),
+                              dim *
+                                system_bodies[b].joint_functionals().size());
 
     std::vector<unsigned int> next_row(system_bodies.size());
     for (unsigned int j = 0; j < system_joints.size(); ++j)
@@ -73,7 +72,7 @@ namespace ACF
   MultibodySystem::check_initial_velocities(
     const std::vector<JointParameters> &joints) const
   {
-    const SystemState     state    = initial_state();
+    const SystemState state        = initial_state();
     const Eigen::VectorXd velocity = constraint_velocity(state.velocities);
     for (unsigned int j = 0; j < system_joints.size(); ++j)
       {
@@ -118,7 +117,7 @@ namespace ACF
   MultibodySystem::functional_values(const unsigned int body,
                                      const NodalVector &x) const
   {
-    const auto     &functionals = system_bodies[body].joint_functionals();
+    const auto &functionals = system_bodies[body].joint_functionals();
     Eigen::VectorXd values(dim * functionals.size());
     for (unsigned int p = 0; p < functionals.size(); ++p)
       {
@@ -166,9 +165,9 @@ namespace ACF
 
   void
   MultibodySystem::add_external_and_joint_forces(
-    const unsigned int     body,
+    const unsigned int body,
     const Eigen::VectorXd &multipliers,
-    NodalVector           &force) const
+    NodalVector &force) const
   {
     const BodyOperators &operators = system_bodies[body].operators();
     if (gravity_acceleration.norm_square() > 0)
@@ -187,10 +186,8 @@ namespace ACF
 
     const auto &functionals = system_bodies[body].joint_functionals();
     for (unsigned int p = 0; p < functionals.size(); ++p)
-      functionals[p].add_adjoint(Vector3({F(dim * p),
-                                          F(dim * p + 1),
-                                          F(dim * p + 2)}),
-                                 force);
+      functionals[p].add_adjoint(
+        Vector3({F(dim * p), F(dim * p + 1), F(dim * p + 2)}), force);
   }
 
 
@@ -202,8 +199,8 @@ namespace ACF
     for (unsigned int b = 0; b < system_bodies.size(); ++b)
       {
         const BodyOperators &operators = system_bodies[b].operators();
-        NodalVector          product(operators.n_unknowns());
-        NodalVector          scratch(operators.n_unknowns());
+        NodalVector product(operators.n_unknowns());
+        NodalVector scratch(operators.n_unknowns());
 
         operators.mass_matrix.vmult(product, state.velocities[b]);
         energy.kinetic += 0.5 * (state.velocities[b] * product);
@@ -228,9 +225,8 @@ namespace ACF
   {
     Vector3 momentum;
     for (unsigned int b = 0; b < system_bodies.size(); ++b)
-      momentum +=
-        system_bodies[b].operators().mass *
-        mass_mean(system_bodies[b].operators(), state.velocities[b]);
+      momentum += system_bodies[b].operators().mass *
+                  mass_mean(system_bodies[b].operators(), state.velocities[b]);
     return momentum;
   }
 
@@ -243,7 +239,7 @@ namespace ACF
     for (unsigned int b = 0; b < system_bodies.size(); ++b)
       {
         const BodyOperators &operators = system_bodies[b].operators();
-        NodalVector          product(operators.n_unknowns());
+        NodalVector product(operators.n_unknowns());
         operators.mass_matrix.vmult(product, state.velocities[b]);
         for (unsigned int a = 0; a < operators.n_nodes; ++a)
           {
@@ -265,7 +261,7 @@ namespace ACF
   MultibodySystem::reaction(const unsigned int index,
                             const SystemState &state) const
   {
-    const Joint          &joint = system_joints[index];
+    const Joint &joint = system_joints[index];
     const Eigen::VectorXd F =
       -joint.matrix.transpose() *
       state.multipliers.segment(first_rows[index], joint.n_constraints());

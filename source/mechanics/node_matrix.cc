@@ -57,7 +57,7 @@ namespace ACF
   void
   ScalarNodeMatrix::add(const unsigned int row,
                         const unsigned int col,
-                        const double       value)
+                        const double value)
   {
     values[node_graph->entry(row, col)] += value;
   }
@@ -69,8 +69,8 @@ namespace ACF
   {
     AssertDimension(x.size(), 3 * node_graph->n_nodes());
     AssertDimension(y.size(), x.size());
-    const double *const source      = x.begin();
-    double *const       destination = y.begin();
+    const double *const source = x.begin();
+    double *const destination  = y.begin();
 
     for_all_rows(node_graph->n_nodes(),
                  [&](const unsigned int begin, const unsigned int end) {
@@ -128,7 +128,7 @@ namespace ACF
   void
   BlockNodeMatrix::add(const unsigned int row,
                        const unsigned int col,
-                       const Matrix3     &block)
+                       const Matrix3 &block)
   {
     double *const entry = &values[9 * node_graph->entry(row, col)];
     for (unsigned int i = 0; i < dim; ++i)
@@ -143,14 +143,14 @@ namespace ACF
   {
     AssertDimension(x.size(), 3 * node_graph->n_nodes());
     AssertDimension(y.size(), x.size());
-    const double *const source      = x.begin();
-    double *const       destination = y.begin();
+    const double *const source = x.begin();
+    double *const destination  = y.begin();
 
     for_all_rows(node_graph->n_nodes(),
                  [&](const unsigned int begin, const unsigned int end) {
                    for (unsigned int a = begin; a < end; ++a)
                      {
-                       double        sum[3] = {0, 0, 0};
+                       double sum[3] = {0, 0, 0};
                        const double *A_ab =
                          &values[9 * node_graph->row_start[a]];
                        for (std::size_t e = node_graph->row_start[a];

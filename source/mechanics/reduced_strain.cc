@@ -30,7 +30,7 @@ namespace ACF
 
   Matrix3
   mean_deformation_gradient(const BodyOperators &body,
-                            const NodalVector   &positions)
+                            const NodalVector &positions)
   {
     AssertDimension(positions.size(), body.n_unknowns());
     Matrix3 F;
@@ -59,9 +59,9 @@ namespace ACF
 
   void
   co_rotated_displacement(const BodyOperators &body,
-                          const NodalVector   &positions,
-                          const Matrix3       &rotation,
-                          NodalVector         &displacement)
+                          const NodalVector &positions,
+                          const Matrix3 &rotation,
+                          NodalVector &displacement)
   {
     AssertDimension(displacement.size(), body.n_unknowns());
     const Vector3 centre  = mass_mean(body, positions);
@@ -70,18 +70,17 @@ namespace ACF
       set_node_value(displacement,
                      a,
                      inverse * (node_value(positions, a) - centre) -
-                       (node_value(body.reference_positions, a) -
-                        body.centre));
+                       (node_value(body.reference_positions, a) - body.centre));
   }
 
 
 
   std::optional<double>
-  reduced_strain_force(const BodyOperators  &body,
+  reduced_strain_force(const BodyOperators &body,
                        const RotationMeasure measure,
-                       const NodalVector    &positions,
-                       NodalVector          &force,
-                       NodalVector          &scratch)
+                       const NodalVector &positions,
+                       NodalVector &force,
+                       NodalVector &scratch)
   {
     const std::optional<BodyRotation> frame =
       body_rotation(mean_deformation_gradient(body, positions), measure);
@@ -92,7 +91,7 @@ namespace ACF
     co_rotated_displacement(body, positions, frame->rotation, q);
     body.stiffness_matrix.vmult(force, q);
 
-    double  energy = 0;
+    double energy = 0;
     Vector3 c;
     for (unsigned int a = 0; a < body.n_nodes; ++a)
       {

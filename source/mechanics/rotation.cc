@@ -50,8 +50,8 @@ namespace ACF
                                                   Eigen::ComputeFullV);
 
     const Eigen::Matrix3d &V = svd.matrixV();
-    const Eigen::Matrix3d  R = svd.matrixU() * V.transpose();
-    const Eigen::Matrix3d  U =
+    const Eigen::Matrix3d R  = svd.matrixU() * V.transpose();
+    const Eigen::Matrix3d U =
       V * svd.singularValues().asDiagonal() * V.transpose();
     const Eigen::Matrix3d L =
       (U.trace() * Eigen::Matrix3d::Identity() - U).inverse();
@@ -63,8 +63,8 @@ namespace ACF
         {
           result.rotation[i][j] = R(i, j);
 
-          const unsigned int k       = (j + 1) % dim;
-          const unsigned int l       = (j + 2) % dim;
+          const unsigned int k          = (j + 1) % dim;
+          const unsigned int l          = (j + 2) % dim;
           result.spin_gradient[i][k][j] = L(i, l);
           result.spin_gradient[i][j][k] = -L(i, l);
         }
@@ -116,12 +116,12 @@ namespace ACF
 
 
   std::optional<BodyRotation>
-  body_rotation(const Matrix3        &deformation_gradient,
+  body_rotation(const Matrix3 &deformation_gradient,
                 const RotationMeasure measure)
   {
-    return measure == RotationMeasure::polar ?
-             polar_rotation(deformation_gradient) :
-             three_point_rotation(deformation_gradient);
+    return measure == RotationMeasure::polar
+             ? polar_rotation(deformation_gradient)
+             : three_point_rotation(deformation_gradient);
   }
 
 
@@ -129,12 +129,11 @@ namespace ACF
   Matrix3
   rotation_matrix(const Vector3 &v)
   {
-    const double    angle = v.norm();
+    const double angle = v.norm();
     Eigen::Vector3d axis(1, 0, 0);
     if (angle > 0)
       axis = Eigen::Vector3d(v[0], v[1], v[2]) / angle;
-    const Eigen::Matrix3d R =
-      Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    const Eigen::Matrix3d R = Eigen::AngleAxisd(angle, axis).toRotationMatrix();
 
     Matrix3 result;
     for (unsigned int i = 0; i < dim; ++i)

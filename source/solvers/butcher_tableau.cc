@@ -18,7 +18,7 @@ namespace ACF
     collocation_coefficients(const Eigen::VectorXd &c)
     {
       const unsigned int s = c.size();
-      Eigen::MatrixXd    moments(s, s), integrals(s, s);
+      Eigen::MatrixXd moments(s, s), integrals(s, s);
       for (unsigned int i = 0; i < s; ++i)
         for (unsigned int k = 0; k < s; ++k)
           {
@@ -81,8 +81,8 @@ namespace ACF
   StageTriangularization
   triangularize_stages(const ButcherTableau &tableau)
   {
-    const unsigned int     s = tableau.n_stages();
-    Eigen::MatrixXd        upper = tableau.A * tableau.A;
+    const unsigned int s  = tableau.n_stages();
+    Eigen::MatrixXd upper = tableau.A * tableau.A;
     StageTriangularization result;
     result.lower = Eigen::MatrixXd::Identity(s, s);
     for (unsigned int k = 0; k < s; ++k)
@@ -91,9 +91,9 @@ namespace ACF
           result.lower(i, k) = upper(i, k) / upper(k, k);
           upper.row(i) -= result.lower(i, k) * upper.row(k);
         }
-    result.diagonal   = upper.diagonal();
-    result.increments = tableau.A * tableau.A *
-                        result.diagonal.cwiseInverse().asDiagonal();
+    result.diagonal = upper.diagonal();
+    result.increments =
+      tableau.A * tableau.A * result.diagonal.cwiseInverse().asDiagonal();
     return result;
   }
 
@@ -103,7 +103,7 @@ namespace ACF
   stage_shape(const ButcherTableau &tableau, const double c)
   {
     const Eigen::VectorXd &nodes = tableau.c;
-    StageShape             shape;
+    StageShape shape;
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
         double value      = c * c / (nodes(i) * nodes(i));

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/solvers/factorization_cache.h>
 
 #include <algorithm>
@@ -10,7 +9,7 @@
 namespace ACF
 {
   template <typename Number>
-  JointedFactorization<Number>::JointedFactorization(const Body  &body,
+  JointedFactorization<Number>::JointedFactorization(const Body &body,
                                                      const Number shift)
     : factor(body.operators(), shift)
     , functionals(body.joint_functionals())
@@ -57,7 +56,7 @@ namespace ACF
 
   template <typename Number>
   void
-  JointedFactorization<Number>::subtract_columns(const Vector        &F,
+  JointedFactorization<Number>::subtract_columns(const Vector &F,
                                                  std::vector<Number> &x) const
   {
     using Map = Eigen::Map<const Matrix>;
@@ -77,9 +76,9 @@ namespace ACF
   JointedFactorization<Number> &
   FactorizationCache::find_or_factorize(
     std::map<Key, std::unique_ptr<JointedFactorization<Number>>> &factors,
-    const Body                                                   &body,
-    const Number                                                  shift,
-    unsigned long                                                &counter)
+    const Body &body,
+    const Number shift,
+    unsigned long &counter)
   {
     auto &entry = factors[Key(&body, std::real(shift), std::imag(shift))];
     if (!entry)

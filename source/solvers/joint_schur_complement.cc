@@ -26,10 +26,10 @@ namespace ACF
 
   template <typename Number>
   JointSchurComplement<Number>::JointSchurComplement(
-    const MultibodySystem                       &system,
-    const std::vector<Matrix3>                  &rotations,
+    const MultibodySystem &system,
+    const std::vector<Matrix3> &rotations,
     std::vector<JointedFactorization<Number> *> factors,
-    Statistics                                  &statistics)
+    Statistics &statistics)
     : system(system)
     , factors(std::move(factors))
     , statistics(statistics)
@@ -58,7 +58,7 @@ namespace ACF
   template <typename Number>
   typename JointSchurComplement<Number>::Vector
   JointSchurComplement<Number>::solve(std::vector<std::vector<Number>> &bodies,
-                                      const Vector                     &g)
+                                      const Vector &g)
   {
     {
       const PhaseTimer timer(statistics, "solves");
@@ -71,10 +71,9 @@ namespace ACF
     Vector residual = -g;
     for (unsigned int b = 0; b < bodies.size(); ++b)
       {
-        const auto  &rows = system.constraints(b).rows;
-        const Vector values =
-          rotated_constraints[b].template cast<Number>() *
-          factors[b]->functional_values(bodies[b]);
+        const auto &rows    = system.constraints(b).rows;
+        const Vector values = rotated_constraints[b].template cast<Number>() *
+                              factors[b]->functional_values(bodies[b]);
         for (unsigned int r = 0; r < rows.size(); ++r)
           residual(rows[r]) += values(r);
       }

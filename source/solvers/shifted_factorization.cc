@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/solvers/shifted_factorization.h>
 
 #include <deal.II/base/timer.h>
@@ -71,12 +70,12 @@ namespace ACF
       MumpsInterface<Number>::call(structure);
       for (unsigned int i = 1; i <= 4; ++i)
         icntl(i) = (i == 4 ? 0 : -1); // silent
-      icntl(6)           = 0;         // no permutation of columns
-      icntl(7)           = 5;         // nested dissection (METIS)
-      icntl(8)           = 0;         // no scaling
-      icntl(12)          = 1;         // no compressed ordering
-      icntl(13)          = 1;         // no parallel root
-      structure.cntl[0]  = 0;         // no pivoting
+      icntl(6)          = 0;          // no permutation of columns
+      icntl(7)          = 5;          // nested dissection (METIS)
+      icntl(8)          = 0;          // no scaling
+      icntl(12)         = 1;          // no compressed ordering
+      icntl(13)         = 1;          // no parallel root
+      structure.cntl[0] = 0;          // no pivoting
     }
 
     ~Mumps()
@@ -101,8 +100,8 @@ namespace ACF
     std::size_t
     large_infog(const unsigned int i) const
     {
-      return infog(i) >= 0 ? infog(i) : 1000000 * static_cast<std::size_t>(
-                                                    -infog(i));
+      return infog(i) >= 0 ? infog(i)
+                           : 1000000 * static_cast<std::size_t>(-infog(i));
     }
 
     void
@@ -126,10 +125,10 @@ namespace ACF
     Timer timer;
 
     // lower triangle by coordinates, counted from 1
-    const NodeGraph    &graph = body.mass_matrix.graph();
-    std::vector<int>    rows, columns;
+    const NodeGraph &graph = body.mass_matrix.graph();
+    std::vector<int> rows, columns;
     std::vector<Number> values;
-    const std::size_t   estimate = 5 * graph.column.size();
+    const std::size_t estimate = 5 * graph.column.size();
     rows.reserve(estimate);
     columns.reserve(estimate);
     values.reserve(estimate);
@@ -175,9 +174,10 @@ namespace ACF
     if (mumps->infog(1) == -10)
       throw SimulationError("The shifted matrix of a body is singular.");
     if (mumps->infog(1) == -13)
-      throw SimulationError("Not enough memory for the factorisation of a body "
-                            "with " +
-                            std::to_string(n_unknowns) + " unknowns.");
+      throw SimulationError(
+        "Not enough memory for the factorisation of a body "
+        "with " +
+        std::to_string(n_unknowns) + " unknowns.");
     if (mumps->infog(1) < 0)
       throw SimulationError("The factorisation of a body failed with error " +
                             std::to_string(mumps->infog(1)) + " (" +
@@ -198,7 +198,7 @@ namespace ACF
 
   template <typename Number>
   void
-  ShiftedFactorization<Number>::solve(Number            *vectors,
+  ShiftedFactorization<Number>::solve(Number *vectors,
                                       const unsigned int n_vectors)
   {
     auto &structure = mumps->structure;
@@ -219,7 +219,7 @@ namespace ACF
   template <typename Number>
   void
   ShiftedFactorization<Number>::check(const BodyOperators &body,
-                                      const Number         shift)
+                                      const Number shift)
   {
     // r = the masses as load in all directions, which every body has
     std::vector<Number> solution(n_unknowns);
@@ -229,13 +229,13 @@ namespace ACF
     solve(solution.data());
 
     const NodeGraph &graph = body.mass_matrix.graph();
-    double           defect = 0, matrix_norm = 0, y_norm = 0, r_norm = 0;
+    double defect = 0, matrix_norm = 0, y_norm = 0, r_norm = 0;
     for (unsigned int a = 0; a < graph.n_nodes(); ++a)
       for (unsigned int i = 0; i < dim; ++i)
         {
-          const unsigned int k       = dim * a + i;
-          Number             product = 0;
-          double             row_sum = 0;
+          const unsigned int k = dim * a + i;
+          Number product       = 0;
+          double row_sum       = 0;
           for (std::size_t e = graph.row_start[a]; e < graph.row_start[a + 1];
                ++e)
             for (unsigned int j = 0; j < dim; ++j)
@@ -252,8 +252,7 @@ namespace ACF
           r_norm      = std::max(r_norm, std::abs(right_hand_side[k]));
         }
 
-    factor_statistics.backward_error =
-      defect / (matrix_norm * y_norm + r_norm);
+    factor_statistics.backward_error = defect / (matrix_norm * y_norm + r_norm);
     if (!(factor_statistics.backward_error < 1e-10))
       throw SimulationError(
         "The factorisation of a body with " + std::to_string(n_unknowns) +

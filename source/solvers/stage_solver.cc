@@ -25,8 +25,8 @@ namespace ACF
     unsigned long &
     solve_counter(Statistics &statistics)
     {
-      return std::is_same<Number, double>::value ? statistics.real_solves :
-                                                   statistics.complex_solves;
+      return std::is_same<Number, double>::value ? statistics.real_solves
+                                                 : statistics.complex_solves;
     }
 
 
@@ -34,11 +34,11 @@ namespace ACF
     // sum_i factor_i R^T r_i for one body
     template <typename Number>
     void
-    combine_in_body_frame(const StageVector         &stages,
-                          const unsigned int         body,
+    combine_in_body_frame(const StageVector &stages,
+                          const unsigned int body,
                           const std::vector<Number> &factors,
-                          const Matrix3             &rotation,
-                          std::vector<Number>       &result)
+                          const Matrix3 &rotation,
+                          std::vector<Number> &result)
     {
       const unsigned int n = stages[0][body].size() / dim;
       result.resize(dim * n);
@@ -61,9 +61,9 @@ namespace ACF
     template <typename Number>
     void
     add_in_world_frame(const std::vector<Number> &w,
-                       const Number               factor,
-                       const Matrix3             &rotation,
-                       NodalVector               &z)
+                       const Number factor,
+                       const Matrix3 &rotation,
+                       NodalVector &z)
     {
       for (unsigned int a = 0; a < w.size() / dim; ++a)
         {
@@ -79,11 +79,11 @@ namespace ACF
 
     template <typename Number>
     std::unique_ptr<JointSchurComplement<Number>>
-    make_schur_complement(const MultibodySystem      &system,
+    make_schur_complement(const MultibodySystem &system,
                           const std::vector<Matrix3> &rotations,
-                          const Number                shift,
-                          FactorizationCache         &cache,
-                          Statistics                 &statistics)
+                          const Number shift,
+                          FactorizationCache &cache,
+                          Statistics &statistics)
     {
       std::vector<JointedFactorization<Number> *> factors;
       for (const Body &body : system.bodies())
@@ -99,9 +99,9 @@ namespace ACF
 
   DiagonalizedStageSolver::DiagonalizedStageSolver(
     const MultibodySystem &system,
-    const ButcherTableau  &tableau,
-    FactorizationCache    &cache,
-    Statistics            &statistics)
+    const ButcherTableau &tableau,
+    FactorizationCache &cache,
+    Statistics &statistics)
     : system(system)
     , diagonalization(diagonalize_stages(tableau))
     , cache(cache)
@@ -113,13 +113,13 @@ namespace ACF
 
 
   void
-  DiagonalizedStageSolver::prepare(const double                step_size,
+  DiagonalizedStageSolver::prepare(const double step_size,
                                    const std::vector<Matrix3> &new_rotations)
   {
     rotations = new_rotations;
     for (unsigned int k = 0; k < diagonalization.components.size(); ++k)
       {
-        const auto                &component = diagonalization.components[k];
+        const auto &component = diagonalization.components[k];
         const std::complex<double> shift =
           component.eigenvalue / (step_size * step_size);
         if (component.is_real())
@@ -137,15 +137,15 @@ namespace ACF
   void
   DiagonalizedStageSolver::solve_component(
     const StageDiagonalization::Component &component,
-    JointSchurComplement<Number>          &schur_complement,
-    const StageVector                     &stages,
-    const StageConstraints                &constraints,
-    StageVector                           &stage_increments,
-    StageConstraints                      &constraint_increments)
+    JointSchurComplement<Number> &schur_complement,
+    const StageVector &stages,
+    const StageConstraints &constraints,
+    StageVector &stage_increments,
+    StageConstraints &constraint_increments)
   {
     using Vector = typename JointSchurComplement<Number>::Vector;
 
-    const unsigned int  n_stages = stages.size();
+    const unsigned int n_stages = stages.size();
     std::vector<Number> from_stages, to_stages;
     for (unsigned int i = 0; i < n_stages; ++i)
       {
@@ -180,10 +180,10 @@ namespace ACF
 
 
   void
-  DiagonalizedStageSolver::solve(StageVector      &stages,
+  DiagonalizedStageSolver::solve(StageVector &stages,
                                  StageConstraints &constraints)
   {
-    StageVector      stage_increments(stages);
+    StageVector stage_increments(stages);
     StageConstraints constraint_increments(constraints);
     for (auto &stage : stage_increments)
       for (auto &vector : stage)
@@ -213,9 +213,9 @@ namespace ACF
 
 
   OneStepStageSolver::OneStepStageSolver(const MultibodySystem &system,
-                                         const ButcherTableau  &tableau,
-                                         FactorizationCache    &cache,
-                                         Statistics            &statistics)
+                                         const ButcherTableau &tableau,
+                                         FactorizationCache &cache,
+                                         Statistics &statistics)
     : system(system)
     , triangularization(triangularize_stages(tableau))
     , cache(cache)
@@ -226,18 +226,17 @@ namespace ACF
 
 
   void
-  OneStepStageSolver::prepare(const double                step_size,
+  OneStepStageSolver::prepare(const double step_size,
                               const std::vector<Matrix3> &new_rotations)
   {
     rotations = new_rotations;
     for (unsigned int i = 0; i < systems.size(); ++i)
-      systems[i] =
-        make_schur_complement(system,
-                              rotations,
-                              1 / (step_size * step_size *
-                                   triangularization.diagonal(i)),
-                              cache,
-                              statistics);
+      systems[i] = make_schur_complement(system,
+                                         rotations,
+                                         1 / (step_size * step_size *
+                                              triangularization.diagonal(i)),
+                                         cache,
+                                         statistics);
   }
 
 
@@ -250,10 +249,10 @@ namespace ACF
     // B W_i = g_i - sum_j<i L_ij B W_j.
     const unsigned int n_stages = stages.size();
     const unsigned int n_bodies = system.bodies().size();
-    const auto        &L        = triangularization.lower;
+    const auto &L               = triangularization.lower;
 
     std::vector<std::vector<std::vector<double>>> W(n_stages);
-    StageConstraints                              BW(n_stages);
+    StageConstraints BW(n_stages);
     for (unsigned int i = 0; i < n_stages; ++i)
       {
         std::vector<double> select(n_stages, 0.);

@@ -2,9 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-
 #include <acf/mechanics/reduced_strain.h>
-
 #include <acf/time/radau_stepper.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -68,7 +66,7 @@ namespace ACF
   TimeParameters::check() const
   {
     const auto require_positive = [](const std::string &entry,
-                                     const double       value) {
+                                     const double value) {
       if (!(value > 0))
         throw InputError("Time integration",
                          entry,
@@ -87,8 +85,8 @@ namespace ACF
 
 
   RadauStepper::RadauStepper(const MultibodySystem &system,
-                             const TimeParameters  &parameters,
-                             Statistics            &statistics)
+                             const TimeParameters &parameters,
+                             Statistics &statistics)
     : system(system)
     , parameters(parameters)
     , statistics(statistics)
@@ -133,8 +131,7 @@ namespace ACF
             stages[i][b] = 0;
             if (accepted_step_size > 0)
               for (unsigned int j = 0; j <= last; ++j)
-                stages[i][b].add(shape.values[j] -
-                                   (j == last ? 1. : 0.) -
+                stages[i][b].add(shape.values[j] - (j == last ? 1. : 0.) -
                                    tableau.c(i) * ratio * A_inverse(last, j),
                                  accepted_stages[j][b]);
           }
@@ -166,7 +163,7 @@ namespace ACF
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
         const Body &body = system.bodies()[b];
-        Matrix3     F;
+        Matrix3 F;
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
           F += mean_deformation_gradient(body.operators(),
                                          stage_position(state, i, b)) /
@@ -192,9 +189,9 @@ namespace ACF
 
   bool
   RadauStepper::assemble_residual(const SystemState &state,
-                                  StageVector       &residual,
-                                  StageConstraints  &constraint_residual,
-                                  std::string       &failure)
+                                  StageVector &residual,
+                                  StageConstraints &constraint_residual,
+                                  std::string &failure)
   {
     const double inverse_square = 1 / (tried_step_size * tried_step_size);
     SystemVector positions(system.bodies().size());
@@ -202,9 +199,9 @@ namespace ACF
       {
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
           {
-            const Body          &body      = system.bodies()[b];
+            const Body &body               = system.bodies()[b];
             const BodyOperators &operators = body.operators();
-            NodalVector          work(operators.n_unknowns());
+            NodalVector work(operators.n_unknowns());
 
             positions[b] = stage_position(state, i, b);
             ++statistics.force_evaluations;
@@ -246,7 +243,7 @@ namespace ACF
       for (unsigned int b = 0; b < stage.size(); ++b)
         {
           const BodyOperators &operators = system.bodies()[b].operators();
-          const double relative = stage[b].l2_norm() /
+          const double relative          = stage[b].l2_norm() /
                                   std::sqrt(1. * operators.n_nodes) /
                                   operators.length;
           if (!(relative <= norm)) // also if it is not a number
@@ -264,11 +261,12 @@ namespace ACF
     predict(state, step_size);
     stage_solver->prepare(step_size, predicted_rotations(state));
 
-    StepReport       report;
-    StageVector      increment(stages);
+    StepReport report;
+    StageVector increment(stages);
     StageConstraints constraint_increment(stage_multipliers);
-    double           factor        = std::pow(convergence_factor, 0.8);
-    double           previous_norm = 0;
+    double factor         = std::pow(convergence_factor, 0.8);
+    double previous_norm  = 0;
+    double previous_ratio = 0;
     while (report.iterations < parameters.max_newton_iterations)
       {
         if (!assemble_residual(
@@ -287,13 +285,19 @@ namespace ACF
         const double norm = increment_norm(increment);
         if (!std::isfinite(norm))
           {
-            report.failure = "the iteration produced numbers that are not "
-                             "finite";
+            report.failure =
+              "the iteration produced numbers that are not "
+              "finite";
             return report;
           }
         if (report.iterations > 1)
           {
-            report.contraction = norm / previous_norm;
+            // the mean of two iterations, as single ones may be misleading
+            const double ratio = norm / previous_norm;
+            report.contraction =
+              (report.iterations == 2 ? ratio
+                                      : std::sqrt(ratio * previous_ratio));
+            previous_ratio = ratio;
             if (report.contraction >= 0.99)
               {
                 report.failure = "the iteration diverges";
@@ -352,10 +356,10 @@ namespace ACF
   SystemState
   RadauStepper::interpolate(const double time) const
   {
-    const double       tau = accepted_step_size;
-    const double       c   = (time - step_start.time) / tau;
-    const StageShape   shape = stage_shape(tableau, c);
-    const unsigned int s     = tableau.n_stages();
+    const double tau       = accepted_step_size;
+    const double c         = (time - step_start.time) / tau;
+    const StageShape shape = stage_shape(tableau, c);
+    const unsigned int s   = tableau.n_stages();
 
     // Lagrange polynomials of the stages, for the multipliers, and of the
     // stages and the start, for the velocities

@@ -8,7 +8,7 @@
 
 namespace ACF
 {
-  StepController::StepController(const double       base_step_size,
+  StepController::StepController(const double base_step_size,
                                  const unsigned int max_halvings)
     : base_step_size(base_step_size)
     , max_halvings(max_halvings)
@@ -19,7 +19,8 @@ namespace ACF
   double
   StepController::time() const
   {
-    return (base_steps + std::ldexp(fraction, -static_cast<int>(max_halvings))) *
+    return (base_steps +
+            std::ldexp(fraction, -static_cast<int>(max_halvings))) *
            base_step_size;
   }
 

@@ -3,7 +3,6 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
-
 #include <acf/time/time_loop.h>
 
 #include <algorithm>
@@ -20,14 +19,13 @@ namespace ACF
 
     // Shows an observer all its times in the accepted step up to its end.
     void
-    observe_step(Observer           &observer,
+    observe_step(Observer &observer,
                  const RadauStepper &stepper,
-                 const SystemState  &state,
-                 const double        step_size,
-                 const double        end_time)
+                 const SystemState &state,
+                 const double step_size,
+                 const double end_time)
     {
-      const double end =
-        std::min(state.time, end_time) + same_time * step_size;
+      const double end = std::min(state.time, end_time) + same_time * step_size;
       for (double time = observer.next_time(std::min(state.time, end_time));
            time <= end;
            time = observer.next_time(std::min(state.time, end_time)))
@@ -56,8 +54,8 @@ namespace ACF
   {
     if (n_observations == 0)
       return 0;
-    return observation_interval > 0 ? n_observations * observation_interval :
-                                      after_step;
+    return observation_interval > 0 ? n_observations * observation_interval
+                                    : after_step;
   }
 
 
@@ -71,21 +69,20 @@ namespace ACF
 
 
   void
-  run_time_loop(const MultibodySystem         &system,
-                const TimeParameters          &parameters,
+  run_time_loop(const MultibodySystem &system,
+                const TimeParameters &parameters,
                 const std::vector<Observer *> &observers,
-                Progress                      &progress,
-                Statistics                    &statistics)
+                Progress &progress,
+                Statistics &statistics)
   {
-    SystemState    state = system.initial_state();
-    RadauStepper   stepper(system, parameters, statistics);
+    SystemState state = system.initial_state();
+    RadauStepper stepper(system, parameters, statistics);
     StepController controller(parameters.step_size, parameters.max_halvings);
 
-    while (state.time <
-           parameters.end_time - same_time * parameters.step_size)
+    while (state.time < parameters.end_time - same_time * parameters.step_size)
       {
         const double step_size = controller.step_size();
-        StepReport   report;
+        StepReport report;
         {
           const PhaseTimer timer(statistics, "time steps");
           report = stepper.try_step(state, step_size);
@@ -94,12 +91,12 @@ namespace ACF
           {
             ++statistics.rejected_steps;
             if (!controller.halve())
-              throw SimulationError(
-                "The step of " + std::to_string(step_size) + " s at time " +
-                std::to_string(state.time) + " s failed after " +
-                std::to_string(parameters.max_halvings) +
-                " halvings: " + report.failure +
-                ". The results up to this time are kept.");
+              throw SimulationError("The step of " + std::to_string(step_size) +
+                                    " s at time " + std::to_string(state.time) +
+                                    " s failed after " +
+                                    std::to_string(parameters.max_halvings) +
+                                    " halvings: " + report.failure +
+                                    ". The results up to this time are kept.");
             ++statistics.halvings;
             continue;
           }

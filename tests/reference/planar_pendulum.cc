@@ -111,22 +111,23 @@ namespace Reference
         , at_middle(VectorXd::Unit(n, 0))
       {
         for (Index k = 0; k < n; ++k)
-        {
-          gram(k) = length / (2. * k + 1);
-          // P_k' = (2k-1) P_{k-1} + (2k-5) P_{k-3} + ...
-          for (Index l = k - 1; l >= 0; l -= 2)
-            derivative(l, k) = 2 / length * (2. * l + 1);
-          // The integral from -1 of P_k is (P_{k+1} - P_{k-1}) / (2k+1),
-          // with P_{-1} = -1. The last polynomial has none in this space.
-          if (k + 1 < n)
           {
-            antiderivative(k + 1, k) = gram(k) / 2;
-            antiderivative(k ? k - 1 : 0, k) = k ? -gram(k) / 2 : gram(k) / 2;
+            gram(k) = length / (2. * k + 1);
+            // P_k' = (2k-1) P_{k-1} + (2k-5) P_{k-3} + ...
+            for (Index l = k - 1; l >= 0; l -= 2)
+              derivative(l, k) = 2 / length * (2. * l + 1);
+            // The integral from -1 of P_k is (P_{k+1} - P_{k-1}) / (2k+1),
+            // with P_{-1} = -1. The last polynomial has none in this space.
+            if (k + 1 < n)
+              {
+                antiderivative(k + 1, k) = gram(k) / 2;
+                antiderivative(k ? k - 1 : 0, k) =
+                  k ? -gram(k) / 2 : gram(k) / 2;
+              }
+            // P_k(0) = -(k-1)/k P_{k-2}(0)
+            if (k >= 2)
+              at_middle(k) = -(k - 1.) / k * at_middle(k - 2);
           }
-          // P_k(0) = -(k-1)/k P_{k-2}(0)
-          if (k >= 2)
-            at_middle(k) = -(k - 1.) / k * at_middle(k - 2);
-        }
       }
 
       MatrixXd
@@ -166,17 +167,17 @@ namespace Reference
       fields.u = MatrixXd::Zero(n + 2, 1 + n + n_psi + n_u);
       fields.w = fields.psi = fields.u;
       if (support == Support::chord)
-      {
-        // Integrals of P_1, P_2, ... vanish at both ends.
-        fields.w.middleCols(1, n) = space.antiderivative.middleCols(1, n);
-        fields.psi.middleCols(1 + n, n_psi) = polynomials.leftCols(n_psi);
-      }
+        {
+          // Integrals of P_1, P_2, ... vanish at both ends.
+          fields.w.middleCols(1, n) = space.antiderivative.middleCols(1, n);
+          fields.psi.middleCols(1 + n, n_psi) = polynomials.leftCols(n_psi);
+        }
       else
-      {
-        fields.w.middleCols(1, n) =
-          (timoshenko ? polynomials : space.antiderivative) * zero_at_start;
-        fields.psi.middleCols(1 + n, n_psi) = zero_at_start.leftCols(n_psi);
-      }
+        {
+          fields.w.middleCols(1, n) =
+            (timoshenko ? polynomials : space.antiderivative) * zero_at_start;
+          fields.psi.middleCols(1 + n, n_psi) = zero_at_start.leftCols(n_psi);
+        }
       fields.u.rightCols(n_u) = zero_at_start.leftCols(n_u);
       if (!timoshenko)
         fields.psi = space.derivative * fields.w;
@@ -306,11 +307,11 @@ namespace Reference
       StageMatrix powers;
       Eigen::Matrix<double, n_stages, n_stages + 1> integrals;
       for (Index k = 0; k < n_stages; ++k)
-      {
-        powers.row(k) = nodes.array().pow(k);
-        integrals.row(k) << nodes.array().pow(k + 1).transpose(), 1;
-        integrals.row(k) /= k + 1.;
-      }
+        {
+          powers.row(k) = nodes.array().pow(k);
+          integrals.row(k) << nodes.array().pow(k + 1).transpose(), 1;
+          integrals.row(k) /= k + 1.;
+        }
       integrals = powers.fullPivLu().solve(integrals).eval();
       A         = integrals.leftCols<n_stages>().transpose();
       weights   = integrals.col(n_stages);
@@ -368,22 +369,23 @@ namespace Reference
       double increment          = std::numeric_limits<double>::infinity();
       unsigned int n_iterations = 0;
       while (!(increment <= 1e-14))
-      {
-        if (++n_iterations > 50)
-          throw std::runtime_error("The Newton iteration does not converge.");
-        MatrixXd residual(position.size(), n_stages);
-        for (Index i = 0; i < n_stages; ++i)
         {
-          const VectorXd Q = position + nodes(i) * h * velocity +
-                             h * h * acceleration * AA.row(i).transpose();
-          const VectorXd V = velocity + h * acceleration * A.row(i).transpose();
-          residual.col(i)  = mass(Q) * acceleration.col(i) + force(Q, V);
+          if (++n_iterations > 50)
+            throw std::runtime_error("The Newton iteration does not converge.");
+          MatrixXd residual(position.size(), n_stages);
+          for (Index i = 0; i < n_stages; ++i)
+            {
+              const VectorXd Q = position + nodes(i) * h * velocity +
+                                 h * h * acceleration * AA.row(i).transpose();
+              const VectorXd V =
+                velocity + h * acceleration * A.row(i).transpose();
+              residual.col(i) = mass(Q) * acceleration.col(i) + force(Q, V);
+            }
+          const VectorXd correction = factors.solve(residual.reshaped());
+          acceleration -= correction.reshaped(position.size(), n_stages);
+          increment = h * h * correction.lpNorm<Eigen::Infinity>() /
+                      std::max(1., position.lpNorm<Eigen::Infinity>());
         }
-        const VectorXd correction = factors.solve(residual.reshaped());
-        acceleration -= correction.reshaped(position.size(), n_stages);
-        increment = h * h * correction.lpNorm<Eigen::Infinity>() /
-                    std::max(1., position.lpNorm<Eigen::Infinity>());
-      }
       slow = n_iterations > 8;
       position +=
         h * velocity + h * h * acceleration * (A.transpose() * weights);
@@ -422,10 +424,10 @@ namespace Reference
       BeamMatrices matrices(beam, options, support);
       matrices.M(0, 0) = matrices.I0;
       if (support == Support::chord)
-      {
-        matrices.M.col(0) += matrices.b;
-        matrices.M.row(0) += matrices.b.transpose();
-      }
+        {
+          matrices.M.col(0) += matrices.b;
+          matrices.M.row(0) += matrices.b.transpose();
+        }
       const Eigen::GeneralizedSelfAdjointEigenSolver<MatrixXd> solver(
         matrices.K, matrices.M, Eigen::EigenvaluesOnly);
       if (solver.info() != Eigen::Success)
@@ -458,18 +460,18 @@ namespace Reference
     std::vector<PendulumState> history;
     double now = 0;
     for (const double time : times)
-    {
-      require(std::isfinite(time) && time >= now,
-              "times must be finite, not negative and must not decrease",
-              time);
-      // The factor keeps rounding from adding a step.
-      const double n_steps =
-        std::ceil((time - now) / options.step_size * (1 - 1e-10));
-      for (double step = 0; step < n_steps; ++step)
-        pendulum.step((time - now) / n_steps);
-      now = time;
-      history.push_back(pendulum.state(now));
-    }
+      {
+        require(std::isfinite(time) && time >= now,
+                "times must be finite, not negative and must not decrease",
+                time);
+        // The factor keeps rounding from adding a step.
+        const double n_steps =
+          std::ceil((time - now) / options.step_size * (1 - 1e-10));
+        for (double step = 0; step < n_steps; ++step)
+          pendulum.step((time - now) / n_steps);
+        now = time;
+        history.push_back(pendulum.state(now));
+      }
     return history;
   }
 

@@ -15,13 +15,13 @@ namespace
   error_of(const std::vector<std::string> &arguments)
   {
     try
-    {
-      parse_command_line(arguments);
-    }
+      {
+        parse_command_line(arguments);
+      }
     catch (const InputError &error)
-    {
-      return error.what();
-    }
+      {
+        return error.what();
+      }
     return "no error";
   }
 } // namespace

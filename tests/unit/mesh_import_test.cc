@@ -5,100 +5,16 @@
 
 #include <gmsh.h>
 
+#include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
-#include <unit/mesh_test.h>
+#include <unit/mesh_files.h>
 
 using namespace ACF;
 using namespace ACF::Testing;
 
 namespace
 {
-  /** A folder for files that a test writes, removed with it. */
-  class MeshFiles : public testing::Test
-  {
-  protected:
-    void
-    SetUp() override
-    {
-      folder = std::string("mesh_test_") +
-               testing::UnitTest::GetInstance()->current_test_info()->name();
-      std::filesystem::create_directory(folder);
-    }
-
-    void
-    TearDown() override
-    {
-      std::filesystem::remove_all(folder);
-    }
-
-    void
-    write(const std::string &name, const std::string &text) const
-    {
-      std::ofstream(folder + "/" + name, std::ios::binary) << text;
-    }
-
-    std::string
-    read(const std::string &name) const
-    {
-      std::ostringstream text;
-      text << std::ifstream(folder + "/" + name, std::ios::binary).rdbuf();
-      return text.str();
-    }
-
-    /** Have gmsh mesh a script (or, with dimension 0, only export it). */
-    void
-    convert(const std::string &script,
-            const std::string &name,
-            const unsigned int dimension = 3,
-            const double version         = 4.1,
-            const bool binary            = false,
-            const unsigned int order     = 1) const
-    {
-      gmsh::initialize(0, nullptr, false);
-      gmsh::option::setNumber("General.Terminal", 0);
-      gmsh::open(std::string(ACF_TEST_DATA) + "/" + script);
-      gmsh::option::setNumber("Mesh.MshFileVersion", version);
-      gmsh::option::setNumber("Mesh.Binary", binary ? 1 : 0);
-      gmsh::option::setNumber("Mesh.ElementOrder", order);
-      if (dimension > 0)
-        gmsh::model::mesh::generate(dimension);
-      gmsh::write(folder + "/" + name);
-      gmsh::finalize();
-    }
-
-    /** A .msh file 2.2 of the given lines "number x y z" and "number ...". */
-    static std::string
-    msh(const std::vector<std::string> &nodes,
-        const std::vector<std::string> &elements,
-        const std::string &groups = "")
-    {
-      std::string text = "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n" + groups +
-                         "$Nodes\n" + std::to_string(nodes.size()) + "\n";
-      for (const std::string &node : nodes)
-        text += node + "\n";
-      text += "$EndNodes\n$Elements\n" + std::to_string(elements.size()) + "\n";
-      for (const std::string &element : elements)
-        text += element + "\n";
-      return text + "$EndElements\n";
-    }
-
-    void
-    expect_error(const std::string &name,
-                 const std::string &text,
-                 const std::vector<std::string> &parts) const
-    {
-      write(name, text);
-      std::vector<std::string> all = parts;
-      all.insert(all.end(), {"Bodies/b", "'Mesh'", name});
-      expect_mesh_error("set Mesh = " + name, all, folder);
-    }
-
-    std::string folder;
-  };
-
   /** Two tetrahedra with a common face and a vertex 9 that nobody uses. */
   const std::vector<std::string> two_tetrahedra_nodes =
     {"1 0 0 0", "2 1 0 0", "3 0 1 0", "4 0 0 1", "5 1 1 1", "9 7 7 7"};
@@ -121,32 +37,32 @@ TEST_F(MeshFiles, ScriptAndItsMeshFilesAgree)
                                  "v22_binary.msh",
                                  "v41.msh",
                                  "v41_binary.msh"})
-  {
-    const auto mesh = mesh_of("set Mesh = " + name, folder);
-    n_cells[name]   = mesh->triangulation().n_active_cells();
-    EXPECT_EQ(n_cells[name], n_cells.begin()->second) << name;
-    EXPECT_NEAR(volume(*mesh), 2, 1e-12) << name;
-    EXPECT_EQ(names(mesh->surfaces()), "ends|start|surface 5") << name;
-    EXPECT_EQ(names(mesh->regions()), "all|left") << name;
-    EXPECT_NEAR(area(*mesh, "start"), 1, 1e-12);
-    EXPECT_NEAR(area(*mesh, "ends"), 2, 1e-12);
-    EXPECT_NEAR(area(*mesh, "surface 5"), 2, 1e-12);
-    const auto [normal, surface_area] =
-      integrate_normal(*mesh, mesh->surface("start", "", ""));
-    EXPECT_NEAR(normal[0], -1, 1e-12);
-    EXPECT_NEAR(surface_area, 1, 1e-12);
-
-    double volume_left = 0, volume_all = 0;
-    for (const auto &cell : mesh->triangulation().active_cell_iterators())
     {
-      if (mesh->region("left", "", "").count(cell->material_id()) > 0)
-        volume_left += cell->measure();
-      if (mesh->region("all", "", "").count(cell->material_id()) > 0)
-        volume_all += cell->measure();
+      const auto mesh = mesh_of("set Mesh = " + name, folder);
+      n_cells[name]   = mesh->triangulation().n_active_cells();
+      EXPECT_EQ(n_cells[name], n_cells.begin()->second) << name;
+      EXPECT_NEAR(volume(*mesh), 2, 1e-12) << name;
+      EXPECT_EQ(names(mesh->surfaces()), "ends|start|surface 5") << name;
+      EXPECT_EQ(names(mesh->regions()), "all|left") << name;
+      EXPECT_NEAR(area(*mesh, "start"), 1, 1e-12);
+      EXPECT_NEAR(area(*mesh, "ends"), 2, 1e-12);
+      EXPECT_NEAR(area(*mesh, "surface 5"), 2, 1e-12);
+      const auto [normal, surface_area] =
+        integrate_normal(*mesh, mesh->surface("start", "", ""));
+      EXPECT_NEAR(normal[0], -1, 1e-12);
+      EXPECT_NEAR(surface_area, 1, 1e-12);
+
+      double volume_left = 0, volume_all = 0;
+      for (const auto &cell : mesh->triangulation().active_cell_iterators())
+        {
+          if (mesh->region("left", "", "").count(cell->material_id()) > 0)
+            volume_left += cell->measure();
+          if (mesh->region("all", "", "").count(cell->material_id()) > 0)
+            volume_all += cell->measure();
+        }
+      EXPECT_NEAR(volume_left, 1, 1e-12);
+      EXPECT_NEAR(volume_all, 2, 1e-12);
     }
-    EXPECT_NEAR(volume_left, 1, 1e-12);
-    EXPECT_NEAR(volume_all, 2, 1e-12);
-  }
 }
 
 TEST_F(MeshFiles, MeshSizeRefinesGeometries)
@@ -156,6 +72,9 @@ TEST_F(MeshFiles, MeshSizeRefinesGeometries)
   EXPECT_GT(fine->triangulation().n_active_cells(),
             4 * coarse->triangulation().n_active_cells());
   EXPECT_NEAR(volume(*fine), 2, 1e-12);
+  // no option survives from one file to the next
+  EXPECT_EQ(mesh_of("set Mesh = two_boxes.geo")->triangulation().n_vertices(),
+            coarse->triangulation().n_vertices());
   const auto cylinder = mesh_of("set Mesh = cylinder.geo\n set Mesh size = .1");
   EXPECT_NEAR(volume(*cylinder), numbers::PI / 4, 0.01);
 
@@ -178,19 +97,19 @@ TEST_F(MeshFiles, Hexahedra)
                         folder);
   for (const std::string name :
        {"bar_hexahedra.geo", "second_order.msh", "v22.msh"})
-  {
-    const auto mesh = mesh_of(hexahedra + "set Mesh = " + name, folder);
-    EXPECT_EQ(mesh->triangulation().n_active_cells(), 24);
-    EXPECT_EQ(mesh->triangulation().n_used_vertices(), 5 * 3 * 4);
-    EXPECT_FALSE(mesh->is_simplex());
-    EXPECT_NEAR(volume(*mesh), 2, 1e-13);
-    EXPECT_NEAR(area(*mesh, "bottom"), 2, 1e-13);
-    EXPECT_EQ(names(mesh->regions()), "bar");
-    expect_mesh_error(
-      "set Mesh = " + name,
-      {"'Element'", "24 hexahedra", name, "allowed: hexahedron"},
-      folder);
-  }
+    {
+      const auto mesh = mesh_of(hexahedra + "set Mesh = " + name, folder);
+      EXPECT_EQ(mesh->triangulation().n_active_cells(), 24);
+      EXPECT_EQ(mesh->triangulation().n_used_vertices(), 5 * 3 * 4);
+      EXPECT_FALSE(mesh->is_simplex());
+      EXPECT_NEAR(volume(*mesh), 2, 1e-13);
+      EXPECT_NEAR(area(*mesh, "bottom"), 2, 1e-13);
+      EXPECT_EQ(names(mesh->regions()), "bar");
+      expect_mesh_error(
+        "set Mesh = " + name,
+        {"'Element'", "24 hexahedra", name, "allowed: hexahedron"},
+        folder);
+    }
   expect_mesh_error("set Element = hexahedron\n set Mesh = two_boxes.geo",
                     {"'Element'", "tetrahedra", "allowed: tetrahedron"});
 }
@@ -221,28 +140,29 @@ TEST_F(MeshFiles, ComputerAidedDesign)
   std::filesystem::copy(std::string(ACF_TEST_DATA) + "/box.igs", folder);
 
   for (const std::string name : {"box.brep", "box.step", "box.igs"})
-  {
-    const double unit = (name == "box.brep" ? 1. : 1e-3);
-    const auto mesh   = mesh_of("set Mesh = " + name + "\n set Mesh size = " +
-                                std::to_string(0.5 * unit),
-                              folder);
-    EXPECT_NEAR(volume(*mesh) / std::pow(unit, 3), 2, 1e-9) << name;
-    EXPECT_EQ(names(mesh->surfaces()),
-              "surface 1|surface 2|surface 3|surface 4|surface 5|surface 6");
-    EXPECT_EQ(names(mesh->regions()), "volume 1");
-    std::multiset<long> areas;
-    for (const auto &surface : mesh->surfaces())
-      areas.insert(std::lround(1e6 * area(*mesh, surface.first) / unit / unit));
-    EXPECT_EQ(areas,
-              (std::multiset<long>{
-                1000000, 1000000, 2000000, 2000000, 2000000, 2000000}))
-      << name;
-    const auto finer = mesh_of("set Mesh = " + name + "\n set Mesh size = " +
-                                 std::to_string(0.12 * unit),
-                               folder);
-    EXPECT_GT(finer->triangulation().n_active_cells(),
-              2 * mesh->triangulation().n_active_cells());
-  }
+    {
+      const double unit = (name == "box.brep" ? 1. : 1e-3);
+      const auto mesh   = mesh_of("set Mesh = " + name + "\n set Mesh size = " +
+                                  std::to_string(0.5 * unit),
+                                folder);
+      EXPECT_NEAR(volume(*mesh) / std::pow(unit, 3), 2, 1e-9) << name;
+      EXPECT_EQ(names(mesh->surfaces()),
+                "surface 1|surface 2|surface 3|surface 4|surface 5|surface 6");
+      EXPECT_EQ(names(mesh->regions()), "volume 1");
+      std::multiset<long> areas;
+      for (const auto &surface : mesh->surfaces())
+        areas.insert(
+          std::lround(1e6 * area(*mesh, surface.first) / unit / unit));
+      EXPECT_EQ(areas,
+                (std::multiset<long>{
+                  1000000, 1000000, 2000000, 2000000, 2000000, 2000000}))
+        << name;
+      const auto finer = mesh_of("set Mesh = " + name + "\n set Mesh size = " +
+                                   std::to_string(0.12 * unit),
+                                 folder);
+      EXPECT_GT(finer->triangulation().n_active_cells(),
+                2 * mesh->triangulation().n_active_cells());
+    }
 
   testing::internal::CaptureStdout();
   expect_error("broken.step",
@@ -255,27 +175,28 @@ TEST_F(MeshFiles, MirrorMakesSymmetricBodies)
 {
   for (const std::string axis : {"x", "y", "z"})
     for (const std::string element : {"tetrahedron", "hexahedron"})
-    {
-      const unsigned int normal = axis[0] - 'x';
-      const std::string from = "0, 0, 0", to = "-1, -2, -3";
-      const auto mesh = mesh_of(
-        "set Mesh = box\n set Cells = 2, 2, 2\n set Element = " + element +
-        "\n set Box from = " + to + "\n set Box to = " + from +
-        "\n set Mirror = " + axis);
-      EXPECT_NEAR(volume(*mesh), 12, 1e-12);
-      EXPECT_NEAR(integrate(*mesh, [&](const auto &p) { return p[normal]; }),
-                  0,
-                  1e-12);
-      // the side at the plane is gone, the others have images
-      EXPECT_EQ(mesh->surfaces().size(), 10);
-      EXPECT_EQ(mesh->surfaces().count(axis + " max"), 0);
-      EXPECT_EQ(mesh->surfaces().count(axis + " max mirrored"), 0);
-      const auto [vector, surface_area] =
-        integrate_normal(*mesh, mesh->surface(axis + " min mirrored", "", ""));
-      EXPECT_NEAR(surface_area, 6. / (normal + 1), 1e-12);
-      EXPECT_NEAR(vector[normal], 6. / (normal + 1), 1e-12);
-      EXPECT_EQ(names(mesh->regions()), "body");
-    }
+      {
+        const unsigned int normal = axis[0] - 'x';
+        const std::string from = "0, 0, 0", to = "-1, -2, -3";
+        const auto mesh = mesh_of(
+          "set Mesh = box\n set Cells = 2, 2, 2\n set Element = " + element +
+          "\n set Box from = " + to + "\n set Box to = " + from +
+          "\n set Mirror = " + axis);
+        EXPECT_NEAR(volume(*mesh), 12, 1e-12);
+        EXPECT_NEAR(integrate(*mesh, [&](const auto &p) { return p[normal]; }),
+                    0,
+                    1e-12);
+        // the side at the plane is gone, the others have images
+        EXPECT_EQ(mesh->surfaces().size(), 10);
+        EXPECT_EQ(mesh->surfaces().count(axis + " max"), 0);
+        EXPECT_EQ(mesh->surfaces().count(axis + " max mirrored"), 0);
+        const auto [vector, surface_area] =
+          integrate_normal(*mesh,
+                           mesh->surface(axis + " min mirrored", "", ""));
+        EXPECT_NEAR(surface_area, 6. / (normal + 1), 1e-12);
+        EXPECT_NEAR(vector[normal], 6. / (normal + 1), 1e-12);
+        EXPECT_EQ(names(mesh->regions()), "body");
+      }
 
   const auto mesh = mesh_of("set Mesh = two_boxes.geo\n set Mirror = x");
   EXPECT_NEAR(volume(*mesh), 4, 1e-12);
@@ -285,10 +206,10 @@ TEST_F(MeshFiles, MirrorMakesSymmetricBodies)
   for (const Point<dim> &p : mesh->triangulation().get_vertices())
     vertices.insert(std::array<double, 3>{{p[0], p[1], p[2]}});
   for (const std::array<double, 3> &p : vertices)
-  {
-    const std::array<double, 3> image = {{-p[0], p[1], p[2]}};
-    EXPECT_EQ(vertices.count(image), 1);
-  }
+    {
+      const std::array<double, 3> image = {{-p[0], p[1], p[2]}};
+      EXPECT_EQ(vertices.count(image), 1);
+    }
 }
 
 TEST_F(MeshFiles, MirrorErrors)

@@ -53,10 +53,10 @@ namespace
     std::size_t n_cell_faces = 0, n_boundary_faces = 0;
     for (const auto &cell : mesh.triangulation().active_cell_iterators())
       for (const auto &face : cell->face_iterators())
-      {
-        ++n_cell_faces;
-        n_boundary_faces += (face->at_boundary() ? 1 : 0);
-      }
+        {
+          ++n_cell_faces;
+          n_boundary_faces += (face->at_boundary() ? 1 : 0);
+        }
     const unsigned int n_faces = (n_cell_faces + n_boundary_faces) / 2;
     const unsigned int n_edges = n_vertices + n_faces - n_cells - 1;
     return 3 *
@@ -82,12 +82,12 @@ namespace
                             update_values | update_JxW_values);
     double sum = 0;
     for (const auto &cell : dof_handler.active_cell_iterators())
-    {
-      fe_values.reinit(cell);
-      for (const unsigned int q : fe_values.quadrature_point_indices())
-        for (const unsigned int i : fe_values.dof_indices())
-          sum += fe_values.shape_value(i, q) * fe_values.JxW(q);
-    }
+      {
+        fe_values.reinit(cell);
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          for (const unsigned int i : fe_values.dof_indices())
+            sum += fe_values.shape_value(i, q) * fe_values.JxW(q);
+      }
     EXPECT_NEAR(sum, 3 * volume(mesh), 1e-12 * sum);
     return dof_handler.n_dofs();
   }
@@ -195,42 +195,42 @@ TEST(MeshParameters, EntriesThatDoNotApply)
 TEST(Box, VolumeSurfacesAndUnknowns)
 {
   for (const std::string element : {"tetrahedron", "hexahedron"})
-  {
-    const auto mesh = mesh_of(box + "set Element = " + element);
-    EXPECT_EQ(mesh->is_simplex(), element == "tetrahedron");
-    EXPECT_EQ(mesh->triangulation().n_active_cells(),
-              mesh->is_simplex() ? 24 * 24 : 24);
-    EXPECT_NEAR(volume(*mesh), 6, 1e-11);
-    EXPECT_NEAR(integrate(*mesh, [](const auto &p) { return p[2] * p[2]; }),
-                2 * 9,
-                1e-12);
-
-    EXPECT_EQ(names(mesh->surfaces()), "x max|x min|y max|y min|z max|z min");
-    EXPECT_EQ(names(mesh->regions()), "body");
-    const std::array<double, 3> areas = {{3, 6, 2}};
-    for (unsigned int d = 0; d < dim; ++d)
-      for (const double side : {-1., 1.})
-      {
-        const std::string name =
-          std::string(1, "xyz"[d]) + (side < 0 ? " min" : " max");
-        Vector3 expected;
-        expected[d] = side * areas[d];
-        const auto [normal, surface_area] =
-          integrate_normal(*mesh, mesh->surface(name, "", ""));
-        EXPECT_NEAR((normal - expected).norm(), 0, 1e-13) << name;
-        EXPECT_NEAR(surface_area, areas[d], 1e-13) << name;
-      }
-    EXPECT_NEAR(integrate_normal(*mesh, {}).second, 22, 1e-12);
-    for (const auto &cell : mesh->triangulation().active_cell_iterators())
-      EXPECT_EQ(mesh->region("body", "", "").count(cell->material_id()), 1);
-
-    const unsigned int n_dofs = distribute(*mesh);
-    EXPECT_EQ(n_dofs, n_quadratic_dofs(*mesh));
-    if (!mesh->is_simplex())
     {
-      EXPECT_EQ(n_dofs, 3 * 5 * 7 * 9);
+      const auto mesh = mesh_of(box + "set Element = " + element);
+      EXPECT_EQ(mesh->is_simplex(), element == "tetrahedron");
+      EXPECT_EQ(mesh->triangulation().n_active_cells(),
+                mesh->is_simplex() ? 24 * 24 : 24);
+      EXPECT_NEAR(volume(*mesh), 6, 1e-11);
+      EXPECT_NEAR(integrate(*mesh, [](const auto &p) { return p[2] * p[2]; }),
+                  2 * 9,
+                  1e-12);
+
+      EXPECT_EQ(names(mesh->surfaces()), "x max|x min|y max|y min|z max|z min");
+      EXPECT_EQ(names(mesh->regions()), "body");
+      const std::array<double, 3> areas = {{3, 6, 2}};
+      for (unsigned int d = 0; d < dim; ++d)
+        for (const double side : {-1., 1.})
+          {
+            const std::string name =
+              std::string(1, "xyz"[d]) + (side < 0 ? " min" : " max");
+            Vector3 expected;
+            expected[d] = side * areas[d];
+            const auto [normal, surface_area] =
+              integrate_normal(*mesh, mesh->surface(name, "", ""));
+            EXPECT_NEAR((normal - expected).norm(), 0, 1e-13) << name;
+            EXPECT_NEAR(surface_area, areas[d], 1e-13) << name;
+          }
+      EXPECT_NEAR(integrate_normal(*mesh, {}).second, 22, 1e-12);
+      for (const auto &cell : mesh->triangulation().active_cell_iterators())
+        EXPECT_EQ(mesh->region("body", "", "").count(cell->material_id()), 1);
+
+      const unsigned int n_dofs = distribute(*mesh);
+      EXPECT_EQ(n_dofs, n_quadratic_dofs(*mesh));
+      if (!mesh->is_simplex())
+        {
+          EXPECT_EQ(n_dofs, 3 * 5 * 7 * 9);
+        }
     }
-  }
 }
 
 TEST(Box, TetrahedraAreSymmetricToAllMidPlanes)
@@ -255,40 +255,42 @@ TEST(Box, LookUpOfNames)
 TEST(Cylinder, HexahedraFillThePrism)
 {
   for (unsigned int n = 3; n <= 9; ++n)
-  {
-    const auto mesh = mesh_of(cylinder(std::to_string(n) + ", 3") + hexahedra);
-    const int n_rings = std::max(1L, std::lround(n / 4.));
-    const int n_sides = 4 * (n - 2 * n_rings);
-    const int n_inner = (n_sides / 4) * (n_sides / 4);
-    const double polygon =
-      0.5 * n_sides * 0.25 * std::sin(2 * numbers::PI / n_sides);
-    EXPECT_EQ(mesh->triangulation().n_active_cells(),
-              3 * (n_inner + n_sides * n_rings));
-    EXPECT_NEAR(volume(*mesh), 2 * polygon, 1e-13) << n;
-    EXPECT_NEAR(area(*mesh, "start"), polygon, 1e-13);
-    EXPECT_NEAR(area(*mesh, "side"),
-                2 * n_sides * std::sin(numbers::PI / n_sides),
-                1e-12);
-    EXPECT_EQ(distribute(*mesh), n_quadratic_dofs(*mesh));
-  }
+    {
+      const auto mesh =
+        mesh_of(cylinder(std::to_string(n) + ", 3") + hexahedra);
+      const int n_rings = std::max(1L, std::lround(n / 4.));
+      const int n_sides = 4 * (n - 2 * n_rings);
+      const int n_inner = (n_sides / 4) * (n_sides / 4);
+      const double polygon =
+        0.5 * n_sides * 0.25 * std::sin(2 * numbers::PI / n_sides);
+      EXPECT_EQ(mesh->triangulation().n_active_cells(),
+                3 * (n_inner + n_sides * n_rings));
+      EXPECT_NEAR(volume(*mesh), 2 * polygon, 1e-13) << n;
+      EXPECT_NEAR(area(*mesh, "start"), polygon, 1e-13);
+      EXPECT_NEAR(area(*mesh, "side"),
+                  2 * n_sides * std::sin(numbers::PI / n_sides),
+                  1e-12);
+      EXPECT_EQ(distribute(*mesh), n_quadratic_dofs(*mesh));
+    }
 }
 
 TEST(Cylinder, ConvergesWithSecondOrder)
 {
   for (const std::string element : {"tetrahedron", "hexahedron"})
-  {
-    std::array<double, 2> error;
-    for (const unsigned int level : {0, 1})
     {
-      const std::string cells = (level == 0 ? "8, 4" : "16, 8");
-      const auto mesh = mesh_of(cylinder(cells) + "set Element = " + element);
-      error[level]    = numbers::PI * 0.25 * 2 - volume(*mesh);
-      EXPECT_NEAR(area(*mesh, "side"), 2 * numbers::PI, 0.1);
-      EXPECT_EQ(names(mesh->surfaces()), "end|side|start");
+      std::array<double, 2> error;
+      for (const unsigned int level : {0, 1})
+        {
+          const std::string cells = (level == 0 ? "8, 4" : "16, 8");
+          const auto mesh =
+            mesh_of(cylinder(cells) + "set Element = " + element);
+          error[level] = numbers::PI * 0.25 * 2 - volume(*mesh);
+          EXPECT_NEAR(area(*mesh, "side"), 2 * numbers::PI, 0.1);
+          EXPECT_EQ(names(mesh->surfaces()), "end|side|start");
+        }
+      EXPECT_GT(error[1], 0) << element;
+      EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.05) << element;
     }
-    EXPECT_GT(error[1], 0) << element;
-    EXPECT_NEAR(std::log2(error[0] / error[1]), 2, 0.05) << element;
-  }
 }
 
 TEST(Cylinder, AnyDirectionAndVerticesOnTheRadius)
@@ -296,39 +298,40 @@ TEST(Cylinder, AnyDirectionAndVerticesOnTheRadius)
   const Point<dim> to(0.6, -1, 2);
   const Vector3 axis = to / to.norm();
   for (const std::string element : {"tetrahedron", "hexahedron"})
-  {
-    const auto mesh  = mesh_of(cylinder("6, 4", "0.6, -1, 2", "0.25") +
-                              "set Element = " + element);
-    const auto start = mesh->surface("start", "", "");
-    const auto end   = mesh->surface("end", "", "");
-    const auto side  = mesh->surface("side", "", "");
-    EXPECT_NEAR((integrate_normal(*mesh, start).first +
-                 area(*mesh, "start") * axis)
-                  .norm(),
-                0,
-                1e-14);
-    EXPECT_NEAR(
-      (integrate_normal(*mesh, end).first - area(*mesh, "end") * axis).norm(),
-      0,
-      1e-14);
-    std::set<types::boundary_id> used_ids;
-    for (const auto &cell : mesh->triangulation().active_cell_iterators())
-      for (const auto &face : cell->face_iterators())
-        if (face->at_boundary())
-          for (const unsigned int v : face->vertex_indices())
-          {
-            used_ids.insert(face->boundary_id());
-            const Vector3 distance = face->vertex(v) - Point<dim>();
-            const double along     = distance * axis;
-            if (side.count(face->boundary_id()) > 0)
-              EXPECT_NEAR((distance - along * axis).norm(), 0.25, 1e-15);
-            else
-              EXPECT_NEAR(along,
-                          start.count(face->boundary_id()) > 0 ? 0. : to.norm(),
-                          1e-15);
-          }
-    EXPECT_EQ(used_ids.size(), 3); // no face without a name
-  }
+    {
+      const auto mesh  = mesh_of(cylinder("6, 4", "0.6, -1, 2", "0.25") +
+                                "set Element = " + element);
+      const auto start = mesh->surface("start", "", "");
+      const auto end   = mesh->surface("end", "", "");
+      const auto side  = mesh->surface("side", "", "");
+      EXPECT_NEAR((integrate_normal(*mesh, start).first +
+                   area(*mesh, "start") * axis)
+                    .norm(),
+                  0,
+                  1e-14);
+      EXPECT_NEAR(
+        (integrate_normal(*mesh, end).first - area(*mesh, "end") * axis).norm(),
+        0,
+        1e-14);
+      std::set<types::boundary_id> used_ids;
+      for (const auto &cell : mesh->triangulation().active_cell_iterators())
+        for (const auto &face : cell->face_iterators())
+          if (face->at_boundary())
+            for (const unsigned int v : face->vertex_indices())
+              {
+                used_ids.insert(face->boundary_id());
+                const Vector3 distance = face->vertex(v) - Point<dim>();
+                const double along     = distance * axis;
+                if (side.count(face->boundary_id()) > 0)
+                  EXPECT_NEAR((distance - along * axis).norm(), 0.25, 1e-15);
+                else
+                  EXPECT_NEAR(along,
+                              start.count(face->boundary_id()) > 0 ? 0.
+                                                                   : to.norm(),
+                              1e-15);
+              }
+      EXPECT_EQ(used_ids.size(), 3); // no face without a name
+    }
 }
 
 TEST(Cylinder, IsSymmetricToTheCoordinatePlanes)
@@ -346,38 +349,39 @@ TEST(Quadrature, IsExactForMonomials)
   const auto monomial   = [](const auto &rule, const auto &powers) {
     double sum = 0;
     for (unsigned int q = 0; q < rule.size(); ++q)
-    {
-      double value = rule.weight(q);
-      for (unsigned int d = 0; d < powers.size(); ++d)
-        value *= std::pow(rule.point(q)[d], powers[d]);
-      sum += value;
-    }
+      {
+        double value = rule.weight(q);
+        for (unsigned int d = 0; d < powers.size(); ++d)
+          value *= std::pow(rule.point(q)[d], powers[d]);
+        sum += value;
+      }
     return sum;
   };
   for (unsigned int degree = 0; degree <= 9; ++degree)
     for (unsigned int a = 0; a <= degree; ++a)
       for (unsigned int b = 0; a + b <= degree; ++b)
-      {
-        EXPECT_NEAR(monomial(tetrahedra->face_quadrature(degree),
-                             std::array<unsigned int, 2>{{a, b}}),
-                    factorial(a) * factorial(b) / factorial(a + b + 2),
-                    1e-14);
-        for (unsigned int c = 0; a + b + c <= degree; ++c)
-          EXPECT_NEAR(monomial(tetrahedra->cell_quadrature(degree),
-                               std::array<unsigned int, 3>{{a, b, c}}),
-                      factorial(a) * factorial(b) * factorial(c) /
-                        factorial(a + b + c + 3),
-                      1e-14)
-            << degree << ": " << a << b << c;
-        EXPECT_NEAR(monomial(hexahedral->cell_quadrature(degree),
-                             std::array<unsigned int, 3>{{degree, a, degree}}),
-                    1. / ((degree + 1) * (a + 1) * (degree + 1)),
-                    1e-14);
-        EXPECT_NEAR(monomial(hexahedral->face_quadrature(degree),
-                             std::array<unsigned int, 2>{{degree, b}}),
-                    1. / ((degree + 1) * (b + 1)),
-                    1e-14);
-      }
+        {
+          EXPECT_NEAR(monomial(tetrahedra->face_quadrature(degree),
+                               std::array<unsigned int, 2>{{a, b}}),
+                      factorial(a) * factorial(b) / factorial(a + b + 2),
+                      1e-14);
+          for (unsigned int c = 0; a + b + c <= degree; ++c)
+            EXPECT_NEAR(monomial(tetrahedra->cell_quadrature(degree),
+                                 std::array<unsigned int, 3>{{a, b, c}}),
+                        factorial(a) * factorial(b) * factorial(c) /
+                          factorial(a + b + c + 3),
+                        1e-14)
+              << degree << ": " << a << b << c;
+          EXPECT_NEAR(monomial(hexahedral->cell_quadrature(degree),
+                               std::array<unsigned int, 3>{
+                                 {degree, a, degree}}),
+                      1. / ((degree + 1) * (a + 1) * (degree + 1)),
+                      1e-14);
+          EXPECT_NEAR(monomial(hexahedral->face_quadrature(degree),
+                               std::array<unsigned int, 2>{{degree, b}}),
+                      1. / ((degree + 1) * (b + 1)),
+                      1e-14);
+        }
   for (unsigned int degree = 10; degree <= 13; ++degree)
     EXPECT_NEAR(monomial(tetrahedra->face_quadrature(degree),
                          std::array<unsigned int, 2>{{degree, 0}}),
@@ -401,15 +405,15 @@ TEST(MeshData, HexahedraNumberedFromAnyVertex)
   std::mt19937 random(1);
   for (CellData<dim> &cell : data.cells)
     for (unsigned int turn = random() % 12; turn > 0; --turn)
-    {
-      // about the third axis, or about the diagonal
-      const std::array<unsigned int, 8> quarter = {{1, 3, 0, 2, 5, 7, 4, 6}};
-      const std::array<unsigned int, 8> third   = {{0, 2, 4, 6, 1, 3, 5, 7}};
-      const auto &turned = (random() % 2 == 0 ? quarter : third);
-      const auto old     = cell.vertices;
-      for (unsigned int v = 0; v < 8; ++v)
-        cell.vertices[v] = old[turned[v]];
-    }
+      {
+        // about the third axis, or about the diagonal
+        const std::array<unsigned int, 8> quarter = {{1, 3, 0, 2, 5, 7, 4, 6}};
+        const std::array<unsigned int, 8> third   = {{0, 2, 4, 6, 1, 3, 5, 7}};
+        const auto &turned = (random() % 2 == 0 ? quarter : third);
+        const auto old     = cell.vertices;
+        for (unsigned int v = 0; v < 8; ++v)
+          cell.vertices[v] = old[turned[v]];
+      }
   const BodyMesh mesh(data, {"Bodies/b", "block"});
   EXPECT_NEAR(volume(mesh), 1, 1e-13);
   EXPECT_EQ(distribute(mesh), 3 * 7 * 7 * 7);

@@ -48,16 +48,16 @@ namespace ACF::Testing
                      const std::vector<std::string> &parts)
   {
     try
-    {
-      action();
-      ADD_FAILURE() << "no error with " << parts.front();
-    }
+      {
+        action();
+        ADD_FAILURE() << "no error with " << parts.front();
+      }
     catch (const InputError &error)
-    {
-      for (const std::string &part : parts)
-        EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
-          << "no '" << part << "' in: " << error.what();
-    }
+      {
+        for (const std::string &part : parts)
+          EXPECT_NE(std::string(error.what()).find(part), std::string::npos)
+            << "no '" << part << "' in: " << error.what();
+      }
   }
 
   inline void
@@ -80,14 +80,14 @@ namespace ACF::Testing
                             update_JxW_values | update_quadrature_points);
     double sum = 0;
     for (const auto &cell : mesh.triangulation().active_cell_iterators())
-    {
-      fe_values.reinit(cell);
-      for (const unsigned int q : fe_values.quadrature_point_indices())
       {
-        EXPECT_GT(fe_values.JxW(q), 0);
-        sum += function(fe_values.quadrature_point(q)) * fe_values.JxW(q);
+        fe_values.reinit(cell);
+        for (const unsigned int q : fe_values.quadrature_point_indices())
+          {
+            EXPECT_GT(fe_values.JxW(q), 0);
+            sum += function(fe_values.quadrature_point(q)) * fe_values.JxW(q);
+          }
       }
-    }
     return sum;
   }
 
@@ -114,14 +114,14 @@ namespace ACF::Testing
       for (const unsigned int f : cell->face_indices())
         if (cell->face(f)->at_boundary() &&
             (ids.empty() || ids.count(cell->face(f)->boundary_id()) > 0))
-        {
-          fe_values.reinit(cell, f);
-          for (const unsigned int q : fe_values.quadrature_point_indices())
           {
-            normal += fe_values.normal_vector(q) * fe_values.JxW(q);
-            area += fe_values.JxW(q);
+            fe_values.reinit(cell, f);
+            for (const unsigned int q : fe_values.quadrature_point_indices())
+              {
+                normal += fe_values.normal_vector(q) * fe_values.JxW(q);
+                area += fe_values.JxW(q);
+              }
           }
-        }
     return {normal, area};
   }
 

@@ -56,11 +56,11 @@ namespace
       prm.enter_subsection("Bodies");
       prm.add_parameter("Names", body_names, "Names of the bodies.");
       for (unsigned int i = 0; i < bodies.size(); ++i)
-      {
-        prm.enter_subsection(body_names[i]);
-        add(bodies[i]);
-        prm.leave_subsection();
-      }
+        {
+          prm.enter_subsection(body_names[i]);
+          add(bodies[i]);
+          prm.leave_subsection();
+        }
       prm.leave_subsection();
       prm.enter_subsection("Output");
       prm.add_parameter("Probes",
@@ -103,13 +103,13 @@ namespace
   message_of(const std::function<void()> &action)
   {
     try
-    {
-      action();
-    }
+      {
+        action();
+      }
     catch (const InputError &error)
-    {
-      return error.what();
-    }
+      {
+        return error.what();
+      }
     return "no error";
   }
 
@@ -544,12 +544,12 @@ TEST(ParameterFile, ReadsFiles)
   std::filesystem::permissions(name, std::filesystem::perms::none);
   // an administrator may read everything
   if (!std::ifstream(name))
-  {
-    EXPECT_EQ(error(name),
-              name +
-                ": found a file that cannot be read; allowed: a model "
-                "file");
-  }
+    {
+      EXPECT_EQ(error(name),
+                name +
+                  ": found a file that cannot be read; allowed: a model "
+                  "file");
+    }
   std::filesystem::remove(name);
   EXPECT_EQ(error(name), name + ": found no such file; allowed: a model file");
   EXPECT_EQ(error("."), ".: found a directory; allowed: a model file");
@@ -568,15 +568,15 @@ TEST(ParameterFile, ReadsItsOutputAgain)
   EXPECT_EQ(used.find('#'), std::string::npos);
 
   for (const std::string &text : {used, documented_parameters(first.prm)})
-  {
-    const auto again = ParameterFile::from_text(text);
-    ASSERT_EQ(again.names("Bodies"), first.body_names);
-    Declarations second(again.names("Bodies"));
-    again.parse(second.prm);
-    EXPECT_EQ(used_parameters(second.prm), used);
-    EXPECT_EQ(second.title, "New");
-    EXPECT_EQ(second.bodies[0].position, first.bodies[0].position);
-  }
+    {
+      const auto again = ParameterFile::from_text(text);
+      ASSERT_EQ(again.names("Bodies"), first.body_names);
+      Declarations second(again.names("Bodies"));
+      again.parse(second.prm);
+      EXPECT_EQ(used_parameters(second.prm), used);
+      EXPECT_EQ(second.title, "New");
+      EXPECT_EQ(second.bodies[0].position, first.bodies[0].position);
+    }
 }
 
 TEST(ParameterFile, DocumentsDefaultsInOrderOfDeclaration)

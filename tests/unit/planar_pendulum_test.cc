@@ -73,15 +73,15 @@ namespace
     EXPECT_EQ(first.size(), second.size());
     Difference result;
     for (unsigned int i = 0; i < std::min(first.size(), second.size()); ++i)
-    {
-      EXPECT_EQ(first[i].time, second[i].time);
-      result.angle =
-        std::max(result.angle,
-                 std::abs(first[i].chord_angle - second[i].chord_angle));
-      result.deflection = std::max(result.deflection,
-                                   std::abs(first[i].mid_span_deflection -
-                                            second[i].mid_span_deflection));
-    }
+      {
+        EXPECT_EQ(first[i].time, second[i].time);
+        result.angle =
+          std::max(result.angle,
+                   std::abs(first[i].chord_angle - second[i].chord_angle));
+        result.deflection = std::max(result.deflection,
+                                     std::abs(first[i].mid_span_deflection -
+                                              second[i].mid_span_deflection));
+      }
     return result;
   }
 
@@ -155,18 +155,18 @@ namespace
     {
       const double h = end / n_steps;
       for (unsigned int step = 0; step < n_steps; ++step)
-      {
-        const Eigen::VectorXd a1 = acceleration(position, velocity);
-        const Eigen::VectorXd v2 = velocity + h / 2 * a1;
-        const Eigen::VectorXd a2 =
-          acceleration(position + h / 2 * velocity, v2);
-        const Eigen::VectorXd v3 = velocity + h / 2 * a2;
-        const Eigen::VectorXd a3 = acceleration(position + h / 2 * v2, v3);
-        const Eigen::VectorXd v4 = velocity + h * a3;
-        const Eigen::VectorXd a4 = acceleration(position + h * v3, v4);
-        position += h / 6 * (velocity + 2 * v2 + 2 * v3 + v4);
-        velocity += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
-      }
+        {
+          const Eigen::VectorXd a1 = acceleration(position, velocity);
+          const Eigen::VectorXd v2 = velocity + h / 2 * a1;
+          const Eigen::VectorXd a2 =
+            acceleration(position + h / 2 * velocity, v2);
+          const Eigen::VectorXd v3 = velocity + h / 2 * a2;
+          const Eigen::VectorXd a3 = acceleration(position + h / 2 * v2, v3);
+          const Eigen::VectorXd v4 = velocity + h * a3;
+          const Eigen::VectorXd a4 = acceleration(position + h * v3, v4);
+          position += h / 6 * (velocity + 2 * v2 + 2 * v3 + v4);
+          velocity += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+        }
     }
 
     double
@@ -202,27 +202,28 @@ namespace
       Fields result{0, 0, 0, 0, 0, 0};
       double slope = 0, second_derivative = 0;
       for (unsigned int k = 1; k <= n_w; ++k)
-      {
-        const double q = coordinates(k);
-        result.w += q * std::pow(x, k) * (1 - x);
-        slope += q * (k * std::pow(x, k - 1.) - (k + 1.) * std::pow(x, k)) / L;
-        second_derivative += q *
-                             (k * (k - 1.) * std::pow(x, k - 2.) -
-                              (k + 1.) * k * std::pow(x, k - 1.)) /
-                             (L * L);
-      }
+        {
+          const double q = coordinates(k);
+          result.w += q * std::pow(x, k) * (1 - x);
+          slope +=
+            q * (k * std::pow(x, k - 1.) - (k + 1.) * std::pow(x, k)) / L;
+          second_derivative += q *
+                               (k * (k - 1.) * std::pow(x, k - 2.) -
+                                (k + 1.) * k * std::pow(x, k - 1.)) /
+                               (L * L);
+        }
       for (unsigned int k = 0; k < n_psi; ++k)
-      {
-        const double q = coordinates(1 + n_w + k);
-        result.psi += q * std::pow(x, k);
-        result.curvature += q * k * std::pow(x, k - 1.) / L;
-      }
+        {
+          const double q = coordinates(1 + n_w + k);
+          result.psi += q * std::pow(x, k);
+          result.curvature += q * k * std::pow(x, k - 1.) / L;
+        }
       for (unsigned int k = 1; k <= n_u; ++k)
-      {
-        const double q = coordinates(n_w + n_psi + k);
-        result.u += q * std::pow(x, k);
-        result.strain += q * k * std::pow(x, k - 1.) / L;
-      }
+        {
+          const double q = coordinates(n_w + n_psi + k);
+          result.u += q * std::pow(x, k);
+          result.strain += q * k * std::pow(x, k - 1.) / L;
+        }
       if (!timoshenko)
         result.curvature = second_derivative;
       result.shear = timoshenko ? slope - result.psi : 0;
@@ -257,28 +258,29 @@ namespace
       Eigen::MatrixXd mass  = Eigen::MatrixXd::Zero(n, n);
       Eigen::VectorXd force = Eigen::VectorXd::Zero(n);
       for (unsigned int p = 0; p < points.size(); ++p)
-      {
-        const double x      = beam.length / 2 * (1 + points[p]);
-        const double weight = beam.length / 2 * weights[p];
-        force += weight * elastic_force(Q, x);
-        // A line without a height has no rotary inertia.
-        for (const double side : {-1, 1})
         {
-          const double zeta =
-            timoshenko ? side * beam.height / std::sqrt(12.) : 0;
-          const Eigen::MatrixXd J = jacobian(Q, x, zeta);
-          const double h          = 2e-3;
-          const Eigen::Vector2d without_acceleration =
-            (16 * (place(Q + h * V, x, zeta) + place(Q - h * V, x, zeta)) -
-             place(Q + 2 * h * V, x, zeta) - place(Q - 2 * h * V, x, zeta) -
-             30 * place(Q, x, zeta)) /
-            (12 * h * h);
-          const double point_mass = weight * beam.density * area(beam) / 2;
-          mass += point_mass * J.transpose() * J;
-          force += point_mass * J.transpose() *
-                   (without_acceleration + Eigen::Vector2d(0, beam.gravity));
+          const double x      = beam.length / 2 * (1 + points[p]);
+          const double weight = beam.length / 2 * weights[p];
+          force += weight * elastic_force(Q, x);
+          // A line without a height has no rotary inertia.
+          for (const double side : {-1, 1})
+            {
+              const double zeta =
+                timoshenko ? side * beam.height / std::sqrt(12.) : 0;
+              const Eigen::MatrixXd J = jacobian(Q, x, zeta);
+              const double h          = 2e-3;
+              const Eigen::Vector2d without_acceleration =
+                (16 * (place(Q + h * V, x, zeta) + place(Q - h * V, x, zeta)) -
+                 place(Q + 2 * h * V, x, zeta) - place(Q - 2 * h * V, x, zeta) -
+                 30 * place(Q, x, zeta)) /
+                (12 * h * h);
+              const double point_mass = weight * beam.density * area(beam) / 2;
+              mass += point_mass * J.transpose() * J;
+              force +=
+                point_mass * J.transpose() *
+                (without_acceleration + Eigen::Vector2d(0, beam.gravity));
+            }
         }
-      }
       return -mass.ldlt().solve(force);
     }
 
@@ -287,13 +289,13 @@ namespace
     {
       Eigen::MatrixXd J(2, Q.size());
       for (Eigen::Index i = 0; i < Q.size(); ++i)
-      {
-        Eigen::VectorXd changed = Q;
-        changed(i) += i == 0 ? pi / 2 : 1;
-        J.col(i) = place(changed, x, zeta);
-        if (i > 0)
-          J.col(i) -= place(Q, x, zeta);
-      }
+        {
+          Eigen::VectorXd changed = Q;
+          changed(i) += i == 0 ? pi / 2 : 1;
+          J.col(i) = place(changed, x, zeta);
+          if (i > 0)
+            J.col(i) -= place(Q, x, zeta);
+        }
       return J;
     }
 
@@ -304,12 +306,13 @@ namespace
       const Fields field = fields(Q, x);
       Eigen::VectorXd result(Q.size());
       for (Eigen::Index i = 0; i < Q.size(); ++i)
-      {
-        const Fields unit = fields(Eigen::VectorXd::Unit(Q.size(), i), x);
-        result(i)         = E * area(beam) * field.strain * unit.strain +
-                    E * second_moment(beam) * field.curvature * unit.curvature +
-                    shear_stiffness(beam) * field.shear * unit.shear;
-      }
+        {
+          const Fields unit = fields(Eigen::VectorXd::Unit(Q.size(), i), x);
+          result(i) =
+            E * area(beam) * field.strain * unit.strain +
+            E * second_moment(beam) * field.curvature * unit.curvature +
+            shear_stiffness(beam) * field.shear * unit.shear;
+        }
       result(0) = 0;
       return result;
     }
@@ -373,10 +376,12 @@ TEST(PlanarPendulum, FrequenciesOfBernoulliAndEuler)
   ASSERT_EQ(pinned_free.size(), 12u);
   ASSERT_EQ(clamped_free.size(), 12u);
   for (unsigned int i = 0; i < 3; ++i)
-  {
-    EXPECT_NEAR(pinned_free[i] / (factor * pinned[i] * pinned[i]), 1, 1e-7);
-    EXPECT_NEAR(clamped_free[i] / (factor * clamped[i] * clamped[i]), 1, 1e-7);
-  }
+    {
+      EXPECT_NEAR(pinned_free[i] / (factor * pinned[i] * pinned[i]), 1, 1e-7);
+      EXPECT_NEAR(clamped_free[i] / (factor * clamped[i] * clamped[i]),
+                  1,
+                  1e-7);
+    }
 }
 
 TEST(PlanarPendulum, FrequenciesAreThoseOfTheDifferentialEquations)
@@ -385,19 +390,19 @@ TEST(PlanarPendulum, FrequenciesAreThoseOfTheDifferentialEquations)
   for (const BeamTheory theory :
        {BeamTheory::bernoulli_euler, BeamTheory::timoshenko})
     for (const bool clamped : {false, true})
-    {
-      const auto frequencies =
-        clamped ? clamped_free_frequencies(beam, options(theory))
-                : pinned_free_frequencies(beam, options(theory));
-      for (unsigned int i = 0; i < 4; ++i)
       {
-        const double omega = frequencies[i];
-        EXPECT_LT(
-          free_end_determinant(beam, theory, clamped, omega * (1 - 1e-6)) *
-            free_end_determinant(beam, theory, clamped, omega * (1 + 1e-6)),
-          0);
+        const auto frequencies =
+          clamped ? clamped_free_frequencies(beam, options(theory))
+                  : pinned_free_frequencies(beam, options(theory));
+        for (unsigned int i = 0; i < 4; ++i)
+          {
+            const double omega = frequencies[i];
+            EXPECT_LT(
+              free_end_determinant(beam, theory, clamped, omega * (1 - 1e-6)) *
+                free_end_determinant(beam, theory, clamped, omega * (1 + 1e-6)),
+              0);
+          }
       }
-    }
 }
 
 TEST(PlanarPendulum, ShearAndRotaryInertiaLowerTheFirstFrequency)
@@ -437,24 +442,24 @@ TEST(PlanarPendulum, RigidPendulumIsVerticalAfterAQuarterOfItsPeriod)
   beam.youngs_modulus *= 1e6;
   for (const BeamTheory theory :
        {BeamTheory::bernoulli_euler, BeamTheory::timoshenko})
-  {
-    // A pendulum that swings by a right angle to both sides: K(sin(pi / 4)).
-    // The moment of inertia m L^2 / 3 grows by the rotary one, m H^2 / 12.
-    const double radius = theory == BeamTheory::timoshenko
-                            ? std::pow(beam.height / beam.length, 2) / 4
-                            : 0;
-    const double omega =
-      std::sqrt(1.5 * beam.gravity / beam.length / (1 + radius));
-    const double quarter = std::comp_ellint_1(std::sqrt(0.5)) / omega;
-    const auto history =
-      swing_pendulum(beam, options(theory), {quarter, 2 * quarter});
-    EXPECT_NEAR(history[0].chord_angle, -pi / 2, 2e-8);
-    EXPECT_NEAR(history[1].chord_angle, -pi, 2e-8);
-    EXPECT_NEAR(history[0].kinetic_energy,
-                beam.density * area(beam) * beam.gravity * beam.length *
-                  beam.length / 2,
-                1e-7);
-  }
+    {
+      // A pendulum that swings by a right angle to both sides: K(sin(pi / 4)).
+      // The moment of inertia m L^2 / 3 grows by the rotary one, m H^2 / 12.
+      const double radius = theory == BeamTheory::timoshenko
+                              ? std::pow(beam.height / beam.length, 2) / 4
+                              : 0;
+      const double omega =
+        std::sqrt(1.5 * beam.gravity / beam.length / (1 + radius));
+      const double quarter = std::comp_ellint_1(std::sqrt(0.5)) / omega;
+      const auto history =
+        swing_pendulum(beam, options(theory), {quarter, 2 * quarter});
+      EXPECT_NEAR(history[0].chord_angle, -pi / 2, 2e-8);
+      EXPECT_NEAR(history[1].chord_angle, -pi, 2e-8);
+      EXPECT_NEAR(history[0].kinetic_energy,
+                  beam.density * area(beam) * beam.gravity * beam.length *
+                    beam.length / 2,
+                  1e-7);
+    }
 }
 
 TEST(PlanarPendulum, RigidPendulumFollowsItsDifferentialEquation)
@@ -473,41 +478,41 @@ TEST(PlanarPendulum, RigidPendulumFollowsItsDifferentialEquation)
       return -1.5 * beam.gravity / beam.length * std::cos(theta);
     };
     for (unsigned int step = 0; step < n_steps; ++step)
-    {
-      half += h / 2 * acceleration(angle);
-      angle += h * half;
-      half += h / 2 * acceleration(angle);
-    }
+      {
+        half += h / 2 * acceleration(angle);
+        angle += h * half;
+        half += h / 2 * acceleration(angle);
+      }
     return angle;
   };
   for (unsigned int i = 1; i < times.size(); ++i)
-  {
-    const double angle =
-      (4 * rigid_angle(times[i], 4000) - rigid_angle(times[i], 2000)) / 3;
-    EXPECT_NEAR(history[i].chord_angle, angle, 2e-8);
-    EXPECT_LT(std::abs(history[i].mid_span_deflection), 2e-8);
-  }
+    {
+      const double angle =
+        (4 * rigid_angle(times[i], 4000) - rigid_angle(times[i], 2000)) / 3;
+      EXPECT_NEAR(history[i].chord_angle, angle, 2e-8);
+      EXPECT_LT(std::abs(history[i].mid_span_deflection), 2e-8);
+    }
 }
 
 TEST(PlanarPendulum, EnergyIsConserved)
 {
   const PlanarBeam beam;
   for (const bool extensible : {false, true})
-  {
-    BeamOptions settings = options(BeamTheory::timoshenko);
-    settings.extensible  = extensible;
-    const auto history   = swing_pendulum(beam, settings, equidistant(1, 100));
-    EXPECT_EQ(history[0].kinetic_energy, 0);
-    EXPECT_EQ(history[0].elastic_energy, 0);
-    EXPECT_EQ(history[0].potential_energy, 0);
-    double largest = 0;
-    for (const PendulumState &state : history)
     {
-      EXPECT_NEAR(state.total_energy(), 0, 1e-9);
-      largest = std::max(largest, state.elastic_energy);
+      BeamOptions settings = options(BeamTheory::timoshenko);
+      settings.extensible  = extensible;
+      const auto history = swing_pendulum(beam, settings, equidistant(1, 100));
+      EXPECT_EQ(history[0].kinetic_energy, 0);
+      EXPECT_EQ(history[0].elastic_energy, 0);
+      EXPECT_EQ(history[0].potential_energy, 0);
+      double largest = 0;
+      for (const PendulumState &state : history)
+        {
+          EXPECT_NEAR(state.total_energy(), 0, 1e-9);
+          largest = std::max(largest, state.elastic_energy);
+        }
+      EXPECT_GT(largest, 1e-3);
     }
-    EXPECT_GT(largest, 1e-3);
-  }
 }
 
 TEST(PlanarPendulum, ElongationByCentrifugalForceAndWeight)
@@ -535,19 +540,19 @@ TEST(PlanarPendulum, ConvergesWithTheNumberOfShapeFunctions)
   const auto times = equidistant(1, 20);
   for (const BeamTheory theory :
        {BeamTheory::bernoulli_euler, BeamTheory::timoshenko})
-  {
-    const auto finest = swing_pendulum(beam, options(theory, 18), times);
-    std::vector<Difference> errors;
-    for (const unsigned int n : {4, 8, 12})
-      errors.push_back(
-        compare(swing_pendulum(beam, options(theory, n), times), finest));
-    EXPECT_LT(errors[1].deflection, errors[0].deflection / 10);
-    EXPECT_LT(errors[2].deflection, errors[1].deflection / 4);
-    EXPECT_LT(errors[2].deflection, 5e-6);
-    EXPECT_LT(errors[1].angle, errors[0].angle / 10);
-    EXPECT_LT(errors[2].angle, errors[1].angle / 4);
-    EXPECT_LT(errors[2].angle, 5e-6);
-  }
+    {
+      const auto finest = swing_pendulum(beam, options(theory, 18), times);
+      std::vector<Difference> errors;
+      for (const unsigned int n : {4, 8, 12})
+        errors.push_back(
+          compare(swing_pendulum(beam, options(theory, n), times), finest));
+      EXPECT_LT(errors[1].deflection, errors[0].deflection / 10);
+      EXPECT_LT(errors[2].deflection, errors[1].deflection / 4);
+      EXPECT_LT(errors[2].deflection, 5e-6);
+      EXPECT_LT(errors[1].angle, errors[0].angle / 10);
+      EXPECT_LT(errors[2].angle, errors[1].angle / 4);
+      EXPECT_LT(errors[2].angle, 5e-6);
+    }
 }
 
 TEST(PlanarPendulum, ConvergesWithTheTenthOrderOfTheStepSize)
@@ -558,11 +563,11 @@ TEST(PlanarPendulum, ConvergesWithTheTenthOrderOfTheStepSize)
   const auto finest    = swing_pendulum(beam, settings, times);
   std::vector<double> errors;
   for (const double step_size : {8e-3, 4e-3})
-  {
-    settings.step_size = step_size;
-    errors.push_back(
-      compare(swing_pendulum(beam, settings, times), finest).deflection);
-  }
+    {
+      settings.step_size = step_size;
+      errors.push_back(
+        compare(swing_pendulum(beam, settings, times), finest).deflection);
+    }
   EXPECT_GT(errors[1], 1e-11); // far above rounding
   EXPECT_NEAR(std::log2(errors[0] / errors[1]), 10, 0.6);
 }
@@ -573,16 +578,16 @@ TEST(PlanarPendulum, DefaultStepSizeIsAccurate)
   const auto times = equidistant(0.4, 8);
   for (const BeamTheory theory :
        {BeamTheory::bernoulli_euler, BeamTheory::timoshenko})
-  {
-    BeamOptions settings;
-    settings.theory    = theory;
-    const auto history = swing_pendulum(beam, settings, times);
-    settings.step_size /= 2;
-    const Difference error =
-      compare(swing_pendulum(beam, settings, times), history);
-    EXPECT_LT(error.angle, 1e-9);
-    EXPECT_LT(error.deflection, 1e-9);
-  }
+    {
+      BeamOptions settings;
+      settings.theory    = theory;
+      const auto history = swing_pendulum(beam, settings, times);
+      settings.step_size /= 2;
+      const Difference error =
+        compare(swing_pendulum(beam, settings, times), history);
+      EXPECT_LT(error.angle, 1e-9);
+      EXPECT_LT(error.deflection, 1e-9);
+    }
 }
 
 TEST(PlanarPendulum, StatesDoNotDependOnTheOtherTimes)
@@ -608,13 +613,13 @@ TEST(PlanarPendulum, WrongInputIsRejected)
                                            &PlanarBeam::youngs_modulus,
                                            &PlanarBeam::density})
     for (const double value : {0., -1., std::nan("")})
-    {
-      PlanarBeam beam;
-      beam.*member = value;
-      EXPECT_THROW(swing_pendulum(beam, right, {0}), std::invalid_argument);
-      EXPECT_THROW(clamped_free_frequencies(beam, right),
-                   std::invalid_argument);
-    }
+      {
+        PlanarBeam beam;
+        beam.*member = value;
+        EXPECT_THROW(swing_pendulum(beam, right, {0}), std::invalid_argument);
+        EXPECT_THROW(clamped_free_frequencies(beam, right),
+                     std::invalid_argument);
+      }
   PlanarBeam beam;
   beam.poissons_ratio = 0.6;
   EXPECT_THROW(supported_static_deflection(beam, right), std::invalid_argument);

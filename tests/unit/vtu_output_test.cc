@@ -139,11 +139,11 @@ namespace
   {
     NodalVector result(positions.size());
     for (unsigned int a = 0; a < positions.size() / dim; ++a)
-    {
-      const Vector3 value = f(node(positions, a));
-      for (unsigned int i = 0; i < dim; ++i)
-        result[dim * a + i] = value[i];
-    }
+      {
+        const Vector3 value = f(node(positions, a));
+        for (unsigned int i = 0; i < dim; ++i)
+          result[dim * a + i] = value[i];
+      }
     return result;
   }
 
@@ -235,10 +235,10 @@ namespace
     const auto nodes = decode<std::int64_t>(cells.at("connectivity"), "Int64");
     std::int64_t first = 0;
     for (const std::int64_t end : offsets)
-    {
-      piece.cells.emplace_back(nodes.begin() + first, nodes.begin() + end);
-      first = end;
-    }
+      {
+        piece.cells.emplace_back(nodes.begin() + first, nodes.begin() + end);
+        first = end;
+      }
     EXPECT_EQ(first, std::int64_t(nodes.size()));
     piece.bodies =
       decode<std::int32_t>(arrays(tree.get_child("CellData")).at("body"),
@@ -359,34 +359,37 @@ TEST(VtuOutput, CellsHaveTheNodeOrderOfVtk)
   EXPECT_EQ(pieces[0].points.size(), 7U * 5U * 5U);
   EXPECT_EQ(pieces[1].cells.size(), 288U);
   for (unsigned int b = 0; b < pieces.size(); ++b)
-  {
-    const Piece &piece         = pieces[b];
-    const bool simplex         = b % 2 == 1;
-    const unsigned int n_nodes = simplex ? 10 : 27;
-    std::set<std::int64_t> used;
-    for (unsigned int c = 0; c < piece.cells.size(); ++c)
     {
-      const auto &cell = piece.cells[c];
-      ASSERT_EQ(cell.size(), n_nodes);
-      EXPECT_EQ(piece.types[c], simplex ? 24 : 72);
-      EXPECT_EQ(piece.bodies[c], int(b));
-      used.insert(cell.begin(), cell.end());
+      const Piece &piece         = pieces[b];
+      const bool simplex         = b % 2 == 1;
+      const unsigned int n_nodes = simplex ? 10 : 27;
+      std::set<std::int64_t> used;
+      for (unsigned int c = 0; c < piece.cells.size(); ++c)
+        {
+          const auto &cell = piece.cells[c];
+          ASSERT_EQ(cell.size(), n_nodes);
+          EXPECT_EQ(piece.types[c], simplex ? 24 : 72);
+          EXPECT_EQ(piece.bodies[c], int(b));
+          used.insert(cell.begin(), cell.end());
 
-      unsigned int n = simplex ? 4 : 8;
-      for (const auto &corners : parents(n_nodes))
-      {
-        Vector3 centre;
-        for (const unsigned int corner : corners)
-          centre += piece.points[cell[corner]] / double(corners.size());
-        expect_near(piece.points[cell[n++]], centre, 1e-12, "node of a cell");
-      }
-      EXPECT_EQ(n, n_nodes);
+          unsigned int n = simplex ? 4 : 8;
+          for (const auto &corners : parents(n_nodes))
+            {
+              Vector3 centre;
+              for (const unsigned int corner : corners)
+                centre += piece.points[cell[corner]] / double(corners.size());
+              expect_near(piece.points[cell[n++]],
+                          centre,
+                          1e-12,
+                          "node of a cell");
+            }
+          EXPECT_EQ(n, n_nodes);
+        }
+      // all points belong to cells, and no others
+      EXPECT_EQ(used.size(), piece.points.size());
+      EXPECT_EQ(*used.begin(), 0);
+      EXPECT_EQ(*used.rbegin(), std::int64_t(piece.points.size()) - 1);
     }
-    // all points belong to cells, and no others
-    EXPECT_EQ(used.size(), piece.points.size());
-    EXPECT_EQ(*used.begin(), 0);
-    EXPECT_EQ(*used.rbegin(), std::int64_t(piece.points.size()) - 1);
-  }
 }
 
 
@@ -397,15 +400,15 @@ TEST(VtuOutput, CellsFillTheBody)
     make_system({box("hexahedron"), box("tetrahedron")});
   for (const Piece &piece :
        write_and_read(system, system.initial_state(), false))
-  {
-    double total = 0;
-    for (const auto &cell : piece.cells)
     {
-      EXPECT_GT(volume(piece, cell), 0);
-      total += volume(piece, cell);
+      double total = 0;
+      for (const auto &cell : piece.cells)
+        {
+          EXPECT_GT(volume(piece, cell), 0);
+          total += volume(piece, cell);
+        }
+      EXPECT_NEAR(total, 3, 1e-12);
     }
-    EXPECT_NEAR(total, 3, 1e-12);
-  }
 }
 
 
@@ -416,27 +419,27 @@ TEST(VtuOutput, PointsArePlacedPositions)
   const MultibodySystem system = make_system(shapes);
   const auto pieces = write_and_read(system, system.initial_state(), false);
   for (unsigned int b = 0; b < 2; ++b)
-  {
-    // back to the mesh: the corners of the box are points, none is outside
-    const Matrix3 back     = transpose(rotation_matrix(shapes[b].rotation));
-    unsigned int n_corners = 0;
-    for (const Vector3 &x : pieces[b].points)
     {
-      const Vector3 X = back * (x - Vector3(shapes[b].position));
-      bool corner     = true;
-      for (unsigned int i = 0; i < dim; ++i)
-      {
-        const double lower = shapes[b].mesh.box_from[i];
-        const double upper = shapes[b].mesh.box_to[i];
-        EXPECT_GE(X[i], lower - 1e-12);
-        EXPECT_LE(X[i], upper + 1e-12);
-        corner = corner && (std::abs(X[i] - lower) < 1e-12 ||
-                            std::abs(X[i] - upper) < 1e-12);
-      }
-      n_corners += corner;
+      // back to the mesh: the corners of the box are points, none is outside
+      const Matrix3 back     = transpose(rotation_matrix(shapes[b].rotation));
+      unsigned int n_corners = 0;
+      for (const Vector3 &x : pieces[b].points)
+        {
+          const Vector3 X = back * (x - Vector3(shapes[b].position));
+          bool corner     = true;
+          for (unsigned int i = 0; i < dim; ++i)
+            {
+              const double lower = shapes[b].mesh.box_from[i];
+              const double upper = shapes[b].mesh.box_to[i];
+              EXPECT_GE(X[i], lower - 1e-12);
+              EXPECT_LE(X[i], upper + 1e-12);
+              corner = corner && (std::abs(X[i] - lower) < 1e-12 ||
+                                  std::abs(X[i] - upper) < 1e-12);
+            }
+          n_corners += corner;
+        }
+      EXPECT_EQ(n_corners, 8U);
     }
-    EXPECT_EQ(n_corners, 8U);
-  }
 }
 
 
@@ -453,29 +456,30 @@ TEST(VtuOutput, FieldsBelongToTheirPoints)
   const auto pieces = write_and_read(system, state, false);
   ASSERT_EQ(pieces.size(), shapes.size());
   for (unsigned int b = 0; b < shapes.size(); ++b)
-  {
-    const Piece &piece = pieces[b];
-    EXPECT_EQ(piece.fields,
-              (std::set<std::string>{"displacement", "velocity"}));
-
-    // centres of the box and of the cylinder
-    const Vector3 centre = Vector3(shapes[b].position) +
-                           rotation_matrix(shapes[b].rotation) *
-                             (b < 2 ? vector(0.5, 0, 0.25) : vector(0.5, 1, 1));
-    for (unsigned int p = 0; p < piece.points.size(); ++p)
     {
-      expect_near(piece.displacement[p],
-                  quadratic_displacement(piece.points[p]),
-                  1e-9,
-                  "displacement");
-      expect_near(piece.velocity[p],
-                  shapes[b].velocity +
-                    cross_product_3d(shapes[b].angular_velocity,
-                                     piece.points[p] - centre),
-                  1e-5,
-                  "velocity");
+      const Piece &piece = pieces[b];
+      EXPECT_EQ(piece.fields,
+                (std::set<std::string>{"displacement", "velocity"}));
+
+      // centres of the box and of the cylinder
+      const Vector3 centre =
+        Vector3(shapes[b].position) +
+        rotation_matrix(shapes[b].rotation) *
+          (b < 2 ? vector(0.5, 0, 0.25) : vector(0.5, 1, 1));
+      for (unsigned int p = 0; p < piece.points.size(); ++p)
+        {
+          expect_near(piece.displacement[p],
+                      quadratic_displacement(piece.points[p]),
+                      1e-9,
+                      "displacement");
+          expect_near(piece.velocity[p],
+                      shapes[b].velocity +
+                        cross_product_3d(shapes[b].angular_velocity,
+                                         piece.points[p] - centre),
+                      1e-5,
+                      "velocity");
+        }
     }
-  }
 }
 
 
@@ -486,24 +490,24 @@ TEST(VonMisesStress, UniaxialStretch)
   for (BodyParameters parameters : all_shapes())
     for (const RotationMeasure measure :
          {RotationMeasure::polar, RotationMeasure::three_points})
-    {
-      parameters.rotation_measure  = measure;
-      const MultibodySystem system = make_system({parameters});
-      SystemState state            = system.initial_state();
+      {
+        parameters.rotation_measure  = measure;
+        const MultibodySystem system = make_system({parameters});
+        SystemState state            = system.initial_state();
 
-      // stretch along the first axis of the mesh, then a large rotation
-      const Matrix3 rotation = rotation_matrix(vector(-2, 1, 1.5));
-      const auto stretch     = [&](const Vector3 &X) {
-        return rotation * vector((1 + strain) * X[0] + 5, X[1], X[2]);
-      };
-      state.positions[0] =
-        nodal_values(system.bodies()[0].operators().reference_positions,
-                     stretch);
-      const auto pieces = write_and_read(system, state, true);
-      EXPECT_EQ(pieces[0].stress.size(), pieces[0].points.size());
-      for (const float stress : pieces[0].stress)
-        EXPECT_NEAR(stress, 2e11 * strain, 2e11 * strain * 1e-6);
-    }
+        // stretch along the first axis of the mesh, then a large rotation
+        const Matrix3 rotation = rotation_matrix(vector(-2, 1, 1.5));
+        const auto stretch     = [&](const Vector3 &X) {
+          return rotation * vector((1 + strain) * X[0] + 5, X[1], X[2]);
+        };
+        state.positions[0] =
+          nodal_values(system.bodies()[0].operators().reference_positions,
+                       stretch);
+        const auto pieces = write_and_read(system, state, true);
+        EXPECT_EQ(pieces[0].stress.size(), pieces[0].points.size());
+        for (const float stress : pieces[0].stress)
+          EXPECT_NEAR(stress, 2e11 * strain, 2e11 * strain * 1e-6);
+      }
 }
 
 
@@ -513,17 +517,17 @@ TEST(VonMisesStress, VanishesForRotations)
   const MultibodySystem system = make_system(all_shapes());
   const Matrix3 rotation       = rotation_matrix(vector(1, -2, 0.5));
   for (const Body &body : system.bodies())
-  {
-    const auto stresses = von_mises_stress(
-      body, nodal_values(body.initial_positions(), [&](const Vector3 &x) {
-        return rotation * x + vector(1, 2, 3);
-      }));
-    ASSERT_TRUE(stresses.has_value());
-    ASSERT_EQ(stresses->size(), body.discretization().n_nodes());
-    // rounding: strains of 1e-13, from coordinates of 40 m
-    for (const double stress : *stresses)
-      EXPECT_LT(stress, 2e11 * 1e-12);
-  }
+    {
+      const auto stresses = von_mises_stress(
+        body, nodal_values(body.initial_positions(), [&](const Vector3 &x) {
+          return rotation * x + vector(1, 2, 3);
+        }));
+      ASSERT_TRUE(stresses.has_value());
+      ASSERT_EQ(stresses->size(), body.discretization().n_nodes());
+      // rounding: strains of 1e-13, from coordinates of 40 m
+      for (const double stress : *stresses)
+        EXPECT_LT(stress, 2e11 * 1e-12);
+    }
 }
 
 
@@ -535,26 +539,26 @@ TEST(VonMisesStress, PureBendingWithLateralContraction)
 {
   constexpr double curvature = 1e-3;
   for (const std::string element : {"hexahedron", "tetrahedron"})
-  {
-    BodyParameters parameters          = box(element);
-    parameters.mesh.box_from           = {-2, -1, -0.5};
-    parameters.mesh.box_to             = {2, 1, 0.5};
-    parameters.material.poissons_ratio = 0.3;
-    const MultibodySystem system       = make_system({parameters});
-    const Body &body                   = system.bodies()[0];
-    const NodalVector &X               = body.operators().reference_positions;
-    const Matrix3 rotation             = rotation_matrix(vector(0.3, -2, 1));
-    const auto stresses                = von_mises_stress(
-      body, nodal_values(X, [&](const Vector3 &p) {
-        return rotation *
-               (p + curvature * vector(p[0] * p[1], -p[0] * p[0] / 2, 0));
-      }));
-    ASSERT_TRUE(stresses.has_value());
-    for (unsigned int a = 0; a < stresses->size(); ++a)
-      EXPECT_NEAR((*stresses)[a],
-                  2 * (2e11 / 2.6) * curvature * std::abs(X[dim * a + 1]),
-                  1e-6 * 2e11 * curvature);
-  }
+    {
+      BodyParameters parameters          = box(element);
+      parameters.mesh.box_from           = {-2, -1, -0.5};
+      parameters.mesh.box_to             = {2, 1, 0.5};
+      parameters.material.poissons_ratio = 0.3;
+      const MultibodySystem system       = make_system({parameters});
+      const Body &body                   = system.bodies()[0];
+      const NodalVector &X               = body.operators().reference_positions;
+      const Matrix3 rotation             = rotation_matrix(vector(0.3, -2, 1));
+      const auto stresses                = von_mises_stress(
+        body, nodal_values(X, [&](const Vector3 &p) {
+          return rotation *
+                 (p + curvature * vector(p[0] * p[1], -p[0] * p[0] / 2, 0));
+        }));
+      ASSERT_TRUE(stresses.has_value());
+      for (unsigned int a = 0; a < stresses->size(); ++a)
+        EXPECT_NEAR((*stresses)[a],
+                    2 * (2e11 / 2.6) * curvature * std::abs(X[dim * a + 1]),
+                    1e-6 * 2e11 * curvature);
+    }
 }
 
 
@@ -574,16 +578,16 @@ TEST(VonMisesStress, NeedsARotation)
   Statistics statistics;
   VtuOutput output(system, directory.path, output_parameters(true), statistics);
   try
-  {
-    output.observe(state);
-    FAIL() << "no exception";
-  }
+    {
+      output.observe(state);
+      FAIL() << "no exception";
+    }
   catch (const SimulationError &error)
-  {
-    const std::string message = error.what();
-    EXPECT_NE(message.find("hexahedron box"), std::string::npos) << message;
-    EXPECT_NE(message.find("0.25"), std::string::npos) << message;
-  }
+    {
+      const std::string message = error.what();
+      EXPECT_NE(message.find("hexahedron box"), std::string::npos) << message;
+      EXPECT_NE(message.find("0.25"), std::string::npos) << message;
+    }
   EXPECT_TRUE(directory.files().empty());
 }
 
@@ -603,28 +607,30 @@ TEST(VtuOutput, RecordListsAllTimes)
   SystemState state = system.initial_state();
   std::vector<double> times;
   for (const double time : {0., 0.5, 1. / 3 + 1})
-  {
-    state.time = time;
-    times.push_back(time);
-    output.observe(state);
-    EXPECT_EQ(statistics.vtu_files, times.size());
+    {
+      state.time = time;
+      times.push_back(time);
+      output.observe(state);
+      EXPECT_EQ(statistics.vtu_files, times.size());
 
-    // after every observation the record is complete
-    Tree tree;
-    boost::property_tree::read_xml((directory.path / "solution.pvd").string(),
-                                   tree);
-    unsigned int n = 0;
-    for (const auto &[tag, child] : tree.get_child("VTKFile.Collection"))
-      if (tag == "DataSet")
-      {
-        ASSERT_LT(n, times.size());
-        EXPECT_NEAR(child.get<double>("<xmlattr>.timestep"), times[n], 1e-11);
-        EXPECT_EQ(child.get<std::string>("<xmlattr>.file"),
-                  "solution-00000" + std::to_string(n) + ".vtu");
-        ++n;
-      }
-    EXPECT_EQ(n, times.size());
-  }
+      // after every observation the record is complete
+      Tree tree;
+      boost::property_tree::read_xml((directory.path / "solution.pvd").string(),
+                                     tree);
+      unsigned int n = 0;
+      for (const auto &[tag, child] : tree.get_child("VTKFile.Collection"))
+        if (tag == "DataSet")
+          {
+            ASSERT_LT(n, times.size());
+            EXPECT_NEAR(child.get<double>("<xmlattr>.timestep"),
+                        times[n],
+                        1e-11);
+            EXPECT_EQ(child.get<std::string>("<xmlattr>.file"),
+                      "solution-00000" + std::to_string(n) + ".vtu");
+            ++n;
+          }
+      EXPECT_EQ(n, times.size());
+    }
   EXPECT_EQ(directory.files(),
             (std::set<std::string>{"solution-000000.vtu",
                                    "solution-000001.vtu",
@@ -643,15 +649,15 @@ namespace
     Statistics statistics;
     VtuOutput output(system, directory, output_parameters(false), statistics);
     try
-    {
-      output.observe(system.initial_state());
-      FAIL() << "no exception";
-    }
+      {
+        output.observe(system.initial_state());
+        FAIL() << "no exception";
+      }
     catch (const SimulationError &error)
-    {
-      EXPECT_NE(std::string(error.what()).find(file), std::string::npos)
-        << error.what();
-    }
+      {
+        EXPECT_NE(std::string(error.what()).find(file), std::string::npos)
+          << error.what();
+      }
   }
 } // namespace
 

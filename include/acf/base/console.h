@@ -24,8 +24,8 @@ namespace ACF
 
   /**
    * The line that shows how far a simulation is: simulated time, step size,
-   * iterations and time left. On a terminal it is rewritten in place a few times
-   * per second; elsewhere nothing is shown.
+   * iterations and time left. On a terminal it is rewritten in place a few
+   * times per second; elsewhere nothing is shown.
    */
   class Progress
   {
@@ -41,20 +41,20 @@ namespace ACF
     ~Progress();
 
     void
-    update(const double        time,
-           const double        step_size,
-           const unsigned int  iterations,
+    update(const double time,
+           const double step_size,
+           const unsigned int iterations,
            const unsigned long n_steps);
 
   private:
     using Clock = std::chrono::steady_clock;
 
-    std::ostream           &stream;
-    const bool              enabled;
-    const double            end_time;
+    std::ostream &stream;
+    const bool enabled;
+    const double end_time;
     const Clock::time_point start;
-    Clock::time_point       last_update;
-    bool                    line_open = false;
+    Clock::time_point last_update;
+    bool line_open = false;
   };
 
   /** Whether standard output is a terminal. */

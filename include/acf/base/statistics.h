@@ -79,9 +79,9 @@ namespace ACF
 
     ~PhaseTimer()
     {
-      total += std::chrono::duration<double>(std::chrono::steady_clock::now() -
-                                             start)
-                 .count();
+      total +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+          .count();
     }
 
     PhaseTimer(const PhaseTimer &) = delete;
@@ -89,7 +89,7 @@ namespace ACF
     operator=(const PhaseTimer &) = delete;
 
   private:
-    double                                     &total;
+    double &total;
     const std::chrono::steady_clock::time_point start;
   };
 

@@ -84,11 +84,11 @@ namespace ACF
     /**
      * @throws SimulationError if the file cannot be written
      */
-    ProbeOutput(const MultibodySystem              &system,
+    ProbeOutput(const MultibodySystem &system,
                 const std::vector<ProbeParameters> &parameters,
-                const double                        interval,
-                const std::filesystem::path        &directory,
-                Statistics                         &statistics);
+                const double interval,
+                const std::filesystem::path &directory,
+                Statistics &statistics);
 
     void
     observe(const SystemState &state) override;
@@ -98,9 +98,9 @@ namespace ACF
     write_line(const std::string &line);
 
     std::vector<std::unique_ptr<Probe>> probes;
-    std::filesystem::path               file;
-    std::ofstream                       stream;
-    Statistics                         &statistics;
+    std::filesystem::path file;
+    std::ofstream stream;
+    Statistics &statistics;
   };
 } // namespace ACF
 

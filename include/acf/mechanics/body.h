@@ -17,14 +17,14 @@ namespace ACF
   /** What a model file says of a body. */
   struct BodyParameters
   {
-    std::string     name;
-    MeshParameters  mesh;
-    Material        material;
+    std::string name;
+    MeshParameters mesh;
+    Material material;
     RotationMeasure rotation_measure = RotationMeasure::polar;
 
     /** Placement $x = \text{position} + R_0 X$; m and rad. */
     Point<dim> position;
-    Vector3    rotation;
+    Vector3 rotation;
 
     /** Rigid motion at the start: $v + \omega \times (x - \bar x)$. */
     Vector3 velocity;
@@ -59,7 +59,7 @@ namespace ACF
      * Makes or reads the mesh and assembles the operators.
      * @param directory where relative mesh file names start
      */
-    Body(const BodyParameters        &parameters,
+    Body(const BodyParameters &parameters,
          const std::filesystem::path &directory);
 
     const std::string &
@@ -129,11 +129,11 @@ namespace ACF
     add_joint_functional(const NodalFunctional &functional);
 
   private:
-    BodyParameters                            parameters;
+    BodyParameters parameters;
     std::shared_ptr<const BodyDiscretization> finite_elements;
-    std::shared_ptr<const BodyOperators>      constant_operators;
-    Matrix3                                   initial_rotation;
-    std::vector<NodalFunctional>              functionals;
+    std::shared_ptr<const BodyOperators> constant_operators;
+    Matrix3 initial_rotation;
+    std::vector<NodalFunctional> functionals;
   };
 } // namespace ACF
 

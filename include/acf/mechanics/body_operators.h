@@ -5,12 +5,10 @@
 #define acf_mechanics_body_operators_h
 
 #include <acf/base/types.h>
-
 #include <acf/mechanics/mesh.h>
 #include <acf/mechanics/node_matrix.h>
 
 #include <deal.II/dofs/dof_handler.h>
-
 #include <deal.II/fe/fe_system.h>
 
 #include <memory>
@@ -99,9 +97,9 @@ namespace ACF
     renumber_nodes();
 
     std::unique_ptr<const BodyMesh> body_mesh;
-    FESystem<dim>                   element;
-    DoFHandler<dim>                 handler;
-    NodalVector                     positions;
+    FESystem<dim> element;
+    DoFHandler<dim> handler;
+    NodalVector positions;
   };
 
 
@@ -143,7 +141,8 @@ namespace ACF
     /** Centre of mass in the reference state, m. */
     Vector3 centre;
 
-    /** Inertia tensor about the centre of mass in the reference state, kg m^2. */
+    /** Inertia tensor about the centre of mass in the reference state, kg m^2.
+     */
     Matrix3 inertia;
 
     /** Diagonal of the bounding box of the nodes, m. */
@@ -162,7 +161,7 @@ namespace ACF
   /** Assembles the operators of a body by quadrature, once. */
   BodyOperators
   assemble_body_operators(const BodyDiscretization &body,
-                          const Material           &material);
+                          const Material &material);
 } // namespace ACF
 
 #endif

@@ -71,12 +71,12 @@ namespace ACF
   };
 
   SurfaceGeometry
-  surface_geometry(const BodyDiscretization           &body,
+  surface_geometry(const BodyDiscretization &body,
                    const std::set<types::boundary_id> &surface);
 
   /** Mean position: $s(x) = \frac1A \int x\, dA$, m. */
   NodalFunctional
-  surface_mean(const BodyDiscretization           &body,
+  surface_mean(const BodyDiscretization &body,
                const std::set<types::boundary_id> &surface);
 
   /**
@@ -84,9 +84,9 @@ namespace ACF
    * (v \cdot (X - \bar X))\, x\, dA$, with affine weights (paper Sec. 4).
    */
   NodalFunctional
-  surface_moment(const BodyDiscretization           &body,
+  surface_moment(const BodyDiscretization &body,
                  const std::set<types::boundary_id> &surface,
-                 const Vector3                      &v);
+                 const Vector3 &v);
 
   /**
    * Mean of a material direction d (unit vector in the reference state):
@@ -96,9 +96,9 @@ namespace ACF
    * @pre surface_geometry().resolves(d)
    */
   NodalFunctional
-  surface_director(const BodyDiscretization           &body,
+  surface_director(const BodyDiscretization &body,
                    const std::set<types::boundary_id> &surface,
-                   const Vector3                      &direction);
+                   const Vector3 &direction);
 
   /**
    * Position of a material point: $s(x) = \sum_a \phi_a(X) x_a$, m.
@@ -112,7 +112,7 @@ namespace ACF
   /** The sum of two functionals, the second scaled. */
   NodalFunctional
   linear_combination(const NodalFunctional &first,
-                     const double           factor,
+                     const double factor,
                      const NodalFunctional &second);
 } // namespace ACF
 

@@ -71,9 +71,9 @@ namespace ACF
    */
   unsigned int
   find_body(const std::vector<Body> &bodies,
-            const std::string       &name,
-            const std::string       &section,
-            const std::string       &entry);
+            const std::string &name,
+            const std::string &section,
+            const std::string &entry);
 
 
 

@@ -83,10 +83,10 @@ namespace ACF
      * @throws InputError if joints do not fit to the bodies or the initial
      * velocities violate a constraint
      */
-    MultibodySystem(const std::vector<BodyParameters>  &bodies,
+    MultibodySystem(const std::vector<BodyParameters> &bodies,
                     const std::vector<JointParameters> &joints,
-                    const LoadParameters               &loads,
-                    const std::filesystem::path        &directory);
+                    const LoadParameters &loads,
+                    const std::filesystem::path &directory);
 
     const std::vector<Body> &
     bodies() const
@@ -146,9 +146,9 @@ namespace ACF
      * Adds $p - B^T \lambda$ to the force on a body.
      */
     void
-    add_external_and_joint_forces(const unsigned int     body,
+    add_external_and_joint_forces(const unsigned int body,
                                   const Eigen::VectorXd &multipliers,
-                                  NodalVector           &force) const;
+                                  NodalVector &force) const;
 
     /** Gravity's potential is zero at the origin of the world. */
     SystemEnergy
@@ -177,18 +177,17 @@ namespace ACF
 
   private:
     void
-    check_initial_velocities(
-      const std::vector<JointParameters> &joints) const;
+    check_initial_velocities(const std::vector<JointParameters> &joints) const;
 
     Eigen::VectorXd
     apply_constraints(const SystemVector &x) const;
 
-    std::vector<Body>            system_bodies;
-    std::vector<Joint>           system_joints;
-    std::vector<unsigned int>    first_rows;
+    std::vector<Body> system_bodies;
+    std::vector<Joint> system_joints;
+    std::vector<unsigned int> first_rows;
     std::vector<BodyConstraints> body_constraints;
-    Eigen::VectorXd              right_hand_side;
-    Vector3                      gravity_acceleration;
+    Eigen::VectorXd right_hand_side;
+    Vector3 gravity_acceleration;
   };
 } // namespace ACF
 

@@ -81,7 +81,7 @@ namespace ACF
 
   private:
     std::shared_ptr<const NodeGraph> node_graph;
-    std::vector<double>              values;
+    std::vector<double> values;
   };
 
 
@@ -108,7 +108,8 @@ namespace ACF
       return *node_graph;
     }
 
-    /** The nine entries, row by row, of the block at a position of the graph. */
+    /** The nine entries, row by row, of the block at a position of the graph.
+     */
     const double *
     block(const std::size_t position) const
     {
@@ -120,7 +121,7 @@ namespace ACF
 
   private:
     std::shared_ptr<const NodeGraph> node_graph;
-    std::vector<double>              values;
+    std::vector<double> values;
   };
 } // namespace ACF
 

@@ -5,7 +5,6 @@
 #define acf_mechanics_reduced_strain_h
 
 #include <acf/base/types.h>
-
 #include <acf/mechanics/body_operators.h>
 #include <acf/mechanics/rotation.h>
 
@@ -19,7 +18,7 @@ namespace ACF
    */
   Matrix3
   mean_deformation_gradient(const BodyOperators &body,
-                            const NodalVector   &positions);
+                            const NodalVector &positions);
 
   /**
    * Mass-weighted mean of a nodal vector field,
@@ -38,9 +37,9 @@ namespace ACF
    */
   void
   co_rotated_displacement(const BodyOperators &body,
-                          const NodalVector   &positions,
-                          const Matrix3       &rotation,
-                          NodalVector         &displacement);
+                          const NodalVector &positions,
+                          const Matrix3 &rotation,
+                          NodalVector &displacement);
 
   /**
    * The elastic force of the reduced strain $\mathrm{Sym}(R^T \nabla \tilde u)$
@@ -59,11 +58,11 @@ namespace ACF
    * rotation
    */
   std::optional<double>
-  reduced_strain_force(const BodyOperators  &body,
+  reduced_strain_force(const BodyOperators &body,
                        const RotationMeasure measure,
-                       const NodalVector    &positions,
-                       NodalVector          &force,
-                       NodalVector          &scratch);
+                       const NodalVector &positions,
+                       NodalVector &force,
+                       NodalVector &scratch);
 } // namespace ACF
 
 #endif

@@ -16,7 +16,8 @@ namespace ACF
     /** The rotation R of the polar decomposition F = R U. */
     polar,
 
-    /** The rotation of two material directions (Gerstmayr, Schoeberl, Sec. 3). */
+    /** The rotation of two material directions (Gerstmayr, Schoeberl, Sec. 3).
+     */
     three_points
   };
 
@@ -68,7 +69,7 @@ namespace ACF
 
   /** One of the two functions above. */
   std::optional<BodyRotation>
-  body_rotation(const Matrix3        &deformation_gradient,
+  body_rotation(const Matrix3 &deformation_gradient,
                 const RotationMeasure measure);
 
   /**

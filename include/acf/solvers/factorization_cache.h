@@ -5,9 +5,7 @@
 #define acf_solvers_factorization_cache_h
 
 #include <acf/base/statistics.h>
-
 #include <acf/mechanics/body.h>
-
 #include <acf/solvers/shifted_factorization.h>
 
 #include <Eigen/Dense>
@@ -61,11 +59,11 @@ namespace ACF
     }
 
   private:
-    ShiftedFactorization<Number>           factor;
-    const std::vector<NodalFunctional>    &functionals;
-    std::size_t                            n_unknowns;
-    std::vector<Number>                    columns;
-    Matrix                                 joint_compliance;
+    ShiftedFactorization<Number> factor;
+    const std::vector<NodalFunctional> &functionals;
+    std::size_t n_unknowns;
+    std::vector<Number> columns;
+    Matrix joint_compliance;
   };
 
 
@@ -91,9 +89,9 @@ namespace ACF
     find_or_factorize(
       std::map<std::tuple<const Body *, double, double>,
                std::unique_ptr<JointedFactorization<Number>>> &factors,
-      const Body                                              &body,
-      const Number                                             shift,
-      unsigned long                                           &counter);
+      const Body &body,
+      const Number shift,
+      unsigned long &counter);
 
     using Key = std::tuple<const Body *, double, double>;
 

@@ -5,7 +5,6 @@
 #define acf_solvers_joint_schur_complement_h
 
 #include <acf/mechanics/multibody_system.h>
-
 #include <acf/solvers/factorization_cache.h>
 
 namespace ACF
@@ -33,11 +32,10 @@ namespace ACF
      * @param rotations $R_b$ of each body
      * @param factors factorisation of each body; must outlive this object
      */
-    JointSchurComplement(
-      const MultibodySystem                       &system,
-      const std::vector<Matrix3>                  &rotations,
-      std::vector<JointedFactorization<Number> *> factors,
-      Statistics                                  &statistics);
+    JointSchurComplement(const MultibodySystem &system,
+                         const std::vector<Matrix3> &rotations,
+                         std::vector<JointedFactorization<Number> *> factors,
+                         Statistics &statistics);
 
     /**
      * @param[in,out] bodies right-hand sides $r_b$ in the bodies' frames,
@@ -49,9 +47,9 @@ namespace ACF
     solve(std::vector<std::vector<Number>> &bodies, const Vector &g);
 
   private:
-    const MultibodySystem                      &system;
+    const MultibodySystem &system;
     std::vector<JointedFactorization<Number> *> factors;
-    Statistics                                 &statistics;
+    Statistics &statistics;
 
     /** $D'_b$ */
     std::vector<Eigen::MatrixXd> rotated_constraints;

@@ -39,9 +39,9 @@ namespace ACF
    *
    * Contract: the constructor factorises; solve() may be called any number of
    * times. No pivoting across the fill-reducing order, so the factor's size is
-   * known in advance: K is positive definite for $\sigma > 0$, and for a complex
-   * shift of a Radau method its numerical range excludes zero. A test solve
-   * checks the residual.
+   * known in advance: K is positive definite for $\sigma > 0$, and for a
+   * complex shift of a Radau method its numerical range excludes zero. A test
+   * solve checks the residual.
    *
    * @tparam Number double or std::complex<double>
    * @pre MPI is initialised (MUMPS of Debian is the parallel build)
@@ -53,8 +53,8 @@ namespace ACF
     /**
      * @param body provides mass and stiffness
      * @param shift $\sigma$, 1/s^2
-     * @throws SimulationError if the matrix is singular, memory runs out, or the
-     * test solve has a backward error of more than 1e-10
+     * @throws SimulationError if the matrix is singular, memory runs out, or
+     * the test solve has a backward error of more than 1e-10
      */
     ShiftedFactorization(const BodyOperators &body, const Number shift);
 
@@ -66,8 +66,8 @@ namespace ACF
 
     /**
      * Replaces right-hand sides by solutions.
-     * @param vectors @p n_vectors vectors, each of size 3 n_nodes, one after the
-     * other
+     * @param vectors @p n_vectors vectors, each of size 3 n_nodes, one after
+     * the other
      */
     void
     solve(Number *vectors, const unsigned int n_vectors = 1);
@@ -84,8 +84,8 @@ namespace ACF
     void
     check(const BodyOperators &body, const Number shift);
 
-    unsigned int            n_unknowns;
-    std::unique_ptr<Mumps>  mumps;
+    unsigned int n_unknowns;
+    std::unique_ptr<Mumps> mumps;
     FactorizationStatistics factor_statistics;
   };
 } // namespace ACF

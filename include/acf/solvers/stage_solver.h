@@ -36,8 +36,7 @@ namespace ACF
      * what the cache does not have.
      */
     virtual void
-    prepare(const double                step_size,
-            const std::vector<Matrix3> &rotations) = 0;
+    prepare(const double step_size, const std::vector<Matrix3> &rotations) = 0;
 
     /**
      * @param[in,out] stages r, replaced by $\Delta Z$, in the world frame
@@ -58,12 +57,12 @@ namespace ACF
   {
   public:
     DiagonalizedStageSolver(const MultibodySystem &system,
-                            const ButcherTableau  &tableau,
-                            FactorizationCache    &cache,
-                            Statistics            &statistics);
+                            const ButcherTableau &tableau,
+                            FactorizationCache &cache,
+                            Statistics &statistics);
 
     void
-    prepare(const double                step_size,
+    prepare(const double step_size,
             const std::vector<Matrix3> &rotations) override;
 
     void
@@ -73,17 +72,17 @@ namespace ACF
     template <typename Number>
     void
     solve_component(const StageDiagonalization::Component &component,
-                    JointSchurComplement<Number>          &schur_complement,
-                    const StageVector                     &stages,
-                    const StageConstraints                &constraints,
-                    StageVector                           &stage_increments,
+                    JointSchurComplement<Number> &schur_complement,
+                    const StageVector &stages,
+                    const StageConstraints &constraints,
+                    StageVector &stage_increments,
                     StageConstraints &constraint_increments);
 
-    const MultibodySystem     &system;
+    const MultibodySystem &system;
     const StageDiagonalization diagonalization;
-    FactorizationCache        &cache;
-    Statistics                &statistics;
-    std::vector<Matrix3>       rotations;
+    FactorizationCache &cache;
+    Statistics &statistics;
+    std::vector<Matrix3> rotations;
 
     /** One of the two for each component, depending on its eigenvalue. */
     std::vector<std::unique_ptr<JointSchurComplement<double>>> real_systems;
@@ -104,23 +103,23 @@ namespace ACF
   {
   public:
     OneStepStageSolver(const MultibodySystem &system,
-                       const ButcherTableau  &tableau,
-                       FactorizationCache    &cache,
-                       Statistics            &statistics);
+                       const ButcherTableau &tableau,
+                       FactorizationCache &cache,
+                       Statistics &statistics);
 
     void
-    prepare(const double                step_size,
+    prepare(const double step_size,
             const std::vector<Matrix3> &rotations) override;
 
     void
     solve(StageVector &stages, StageConstraints &constraints) override;
 
   private:
-    const MultibodySystem       &system;
+    const MultibodySystem &system;
     const StageTriangularization triangularization;
-    FactorizationCache          &cache;
-    Statistics                  &statistics;
-    std::vector<Matrix3>         rotations;
+    FactorizationCache &cache;
+    Statistics &statistics;
+    std::vector<Matrix3> rotations;
 
     std::vector<std::unique_ptr<JointSchurComplement<double>>> systems;
   };

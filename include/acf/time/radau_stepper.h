@@ -20,7 +20,8 @@ namespace ACF
     double end_time  = 0;
     double step_size = 0;
 
-    /** Bound on the predicted error of the iteration, relative to the bodies. */
+    /** Bound on the predicted error of the iteration, relative to the bodies.
+     */
     double newton_tolerance = 1e-10;
 
     unsigned int max_newton_iterations = 20;
@@ -64,9 +65,10 @@ namespace ACF
    * $Z_i = U_i - u_n - c_i \tau v_n$ the stages satisfy
    * \f[ \tau^{-2} (A_{RK}^{-2} \otimes M) Z + F(Z) + (I \otimes B^T) \Lambda =
    *     P, \qquad B U_i = b, \f]
-   * the velocities are $V_i = v_n + \tau^{-1} \sum_j (A_{RK}^{-1})_{ij} Z_j$ and
-   * the last stage ends the step. The stage equations are solved by a simplified
-   * Newton iteration whose linear systems are those of a StageSolver.
+   * the velocities are $V_i = v_n + \tau^{-1} \sum_j (A_{RK}^{-1})_{ij} Z_j$
+   * and the last stage ends the step. The stage equations are solved by a
+   * simplified Newton iteration whose linear systems are those of a
+   * StageSolver.
    *
    * Convergence control follows RADAU5 (Hairer and Wanner, Sec. IV.8): with the
    * increments $|\Delta Z^k|$ and $\theta_k = |\Delta Z^k| / |\Delta Z^{k-1}|$
@@ -83,8 +85,8 @@ namespace ACF
   {
   public:
     RadauStepper(const MultibodySystem &system,
-                 const TimeParameters  &parameters,
-                 Statistics            &statistics);
+                 const TimeParameters &parameters,
+                 Statistics &statistics);
 
     /**
      * Tries one step. The state stays as it is until accept() is called.
@@ -97,7 +99,8 @@ namespace ACF
     accept(SystemState &state);
 
     /**
-     * The state at a time of the accepted step, from the collocation polynomial.
+     * The state at a time of the accepted step, from the collocation
+     * polynomial.
      * @pre @p time lies in the last accepted step
      */
     SystemState
@@ -112,9 +115,9 @@ namespace ACF
 
     bool
     assemble_residual(const SystemState &state,
-                      StageVector       &residual,
-                      StageConstraints  &constraint_residual,
-                      std::string       &failure);
+                      StageVector &residual,
+                      StageConstraints &constraint_residual,
+                      std::string &failure);
 
     double
     increment_norm(const StageVector &increment) const;
@@ -125,24 +128,24 @@ namespace ACF
                    const unsigned int body) const;
 
     const MultibodySystem &system;
-    const TimeParameters   parameters;
-    Statistics            &statistics;
+    const TimeParameters parameters;
+    Statistics &statistics;
 
-    const ButcherTableau         tableau;
-    const Eigen::MatrixXd        A_inverse;
-    const Eigen::MatrixXd        A_inverse_squared;
-    FactorizationCache           cache;
+    const ButcherTableau tableau;
+    const Eigen::MatrixXd A_inverse;
+    const Eigen::MatrixXd A_inverse_squared;
+    FactorizationCache cache;
     std::unique_ptr<StageSolver> stage_solver;
 
     /** Stages of the tried step, and of the accepted one before it. */
-    StageVector      stages;
+    StageVector stages;
     StageConstraints stage_multipliers;
-    double           tried_step_size = 0;
+    double tried_step_size = 0;
 
-    StageVector      accepted_stages;
+    StageVector accepted_stages;
     StageConstraints accepted_multipliers;
-    SystemState      step_start;
-    double           accepted_step_size = 0;
+    SystemState step_start;
+    double accepted_step_size = 0;
 
     /** $\theta / (1 - \theta)$ of the last measurement. */
     double convergence_factor = 1;

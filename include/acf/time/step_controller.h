@@ -10,10 +10,10 @@ namespace ACF
 {
   /**
    * Chooses step sizes on the lattice $\tau_0 2^{-k}$ so that all multiples of
-   * $\tau_0$ remain ends of steps: a failed step is halved; after two successful
-   * steps the next larger size is tried again where the lattice allows it, after
-   * longer and longer waits if that fails again. Times are computed from
-   * integers and do not drift.
+   * $\tau_0$ remain ends of steps: a failed step is halved; after two
+   * successful steps the next larger size is tried again where the lattice
+   * allows it, after longer and longer waits if that fails again. Times are
+   * computed from integers and do not drift.
    */
   class StepController
   {
@@ -22,7 +22,7 @@ namespace ACF
      * @param base_step_size $\tau_0$, s
      * @param max_halvings largest k, at most 30
      */
-    StepController(const double       base_step_size,
+    StepController(const double base_step_size,
                    const unsigned int max_halvings);
 
     /** End of the accepted steps, s. */
@@ -45,9 +45,9 @@ namespace ACF
     halve();
 
   private:
-    double        base_step_size;
-    unsigned int  max_halvings;
-    unsigned int  n_halvings = 0;
+    double base_step_size;
+    unsigned int max_halvings;
+    unsigned int n_halvings  = 0;
     std::uint64_t base_steps = 0;
 
     /** Part of the current base step that is done, in $2^{-max\_halvings}$. */
@@ -56,7 +56,7 @@ namespace ACF
     /** Successful steps since the last change, and how many it takes. */
     unsigned int n_successes      = 0;
     unsigned int needed_successes = 2;
-    bool         just_doubled     = false;
+    bool just_doubled             = false;
   };
 } // namespace ACF
 

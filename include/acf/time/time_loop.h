@@ -38,7 +38,7 @@ namespace ACF
     }
 
   private:
-    double        observation_interval;
+    double observation_interval;
     unsigned long n_observations = 0;
   };
 
@@ -56,11 +56,11 @@ namespace ACF
    * have then seen everything up to the last accepted step
    */
   void
-  run_time_loop(const MultibodySystem         &system,
-                const TimeParameters          &parameters,
+  run_time_loop(const MultibodySystem &system,
+                const TimeParameters &parameters,
                 const std::vector<Observer *> &observers,
-                Progress                      &progress,
-                Statistics                    &statistics);
+                Progress &progress,
+                Statistics &statistics);
 } // namespace ACF
 
 #endif
