@@ -169,7 +169,8 @@ namespace ACF
       "Mirror",
       mirror,
       "Normal of a plane through the origin at which the mesh, then of half a "
-      "body, is mirrored; mirrored surfaces are called 'NAME mirrored'. "
+      "body, is mirrored; the images of surfaces are called 'NAME mirrored', "
+      "a surface with its image 'NAME both'. "
       "Units: none.",
       Patterns::Selection("none|x|y|z"));
   }

@@ -107,12 +107,17 @@ namespace ACF
       const auto surfaces = data.surfaces;
       for (const auto &[name, ids] : surfaces)
         {
-          if (surfaces.count(name + " mirrored") > 0)
-            throw mirror_error(source,
-                               "a surface '" + name + " mirrored'",
-                               "names that mirrored surfaces do not get");
+          for (const std::string suffix : {" mirrored", " both"})
+            if (surfaces.count(name + suffix) > 0)
+              throw mirror_error(source,
+                                 "a surface '" + name + suffix + "'",
+                                 "names that mirrored surfaces do not get");
           for (const types::boundary_id id : ids)
-            data.surfaces[name + " mirrored"].insert(id + offset);
+            {
+              data.surfaces[name + " mirrored"].insert(id + offset);
+              data.surfaces[name + " both"].insert(
+                {id, static_cast<types::boundary_id>(id + offset)});
+            }
         }
       drop_empty_surfaces(data);
     }

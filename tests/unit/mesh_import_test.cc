@@ -187,7 +187,7 @@ TEST_F(MeshFiles, MirrorMakesSymmetricBodies)
                     0,
                     1e-12);
         // the side at the plane is gone, the others have images
-        EXPECT_EQ(mesh->surfaces().size(), 10);
+        EXPECT_EQ(mesh->surfaces().size(), 15);
         EXPECT_EQ(mesh->surfaces().count(axis + " max"), 0);
         EXPECT_EQ(mesh->surfaces().count(axis + " max mirrored"), 0);
         const auto [vector, surface_area] =
@@ -195,13 +195,18 @@ TEST_F(MeshFiles, MirrorMakesSymmetricBodies)
                            mesh->surface(axis + " min mirrored", "", ""));
         EXPECT_NEAR(surface_area, 6. / (normal + 1), 1e-12);
         EXPECT_NEAR(vector[normal], 6. / (normal + 1), 1e-12);
+        const auto [sum, both_area] =
+          integrate_normal(*mesh, mesh->surface(axis + " min both", "", ""));
+        EXPECT_NEAR(both_area, 12. / (normal + 1), 1e-12);
+        EXPECT_NEAR(sum.norm(), 0, 1e-12);
         EXPECT_EQ(names(mesh->regions()), "body");
       }
 
   const auto mesh = mesh_of("set Mesh = two_boxes.geo\n set Mirror = x");
   EXPECT_NEAR(volume(*mesh), 4, 1e-12);
   EXPECT_EQ(names(mesh->surfaces()),
-            "ends|ends mirrored|surface 5|surface 5 mirrored");
+            "ends|ends both|ends mirrored|surface 5|surface 5 both|"
+            "surface 5 mirrored");
   std::set<std::array<double, 3>> vertices;
   for (const Point<dim> &p : mesh->triangulation().get_vertices())
     vertices.insert(std::array<double, 3>{{p[0], p[1], p[2]}});

@@ -106,7 +106,8 @@ namespace ACF
    * Add the mirror image of a mesh at the plane through the origin normal to
    * coordinate @p axis. Vertices closer to the plane than 1e-7 of the size of
    * the mesh are put on it and shared by both halves. Surfaces of the image are
-   * called "NAME mirrored"; faces on the plane vanish, and surfaces that
+   * called "NAME mirrored", a surface with its image "NAME both"; faces on the
+   * plane vanish, and surfaces that
    * consist of such faces only. The image belongs to the same regions.
    * @throws InputError if there are vertices on both sides of the plane, or no
    *   three on it

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 The acf-dealii authors
+#
+# What the scripts of this folder share. Usage of each: SCRIPT EXECUTABLE TOP.
+# Every failed check is reported; the exit status of the script says whether
+# there were any. The scripts work in a temporary folder.
+set -u
+if [ $# -ne 2 ]; then
+  echo "usage: $0 EXECUTABLE TOP_OF_THE_SOURCES" >&2
+  exit 2
+fi
+acf=$(realpath "$1")
+top=$(realpath "$2")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 2
+
+n_checks=0
+n_failures=0
+
+# Counts a check: check MESSAGE COMMAND ...
+check() {
+  local message=$1
+  shift
+  n_checks=$((n_checks + 1))
+  if ! "$@"; then
+    n_failures=$((n_failures + 1))
+    echo "FAILED: $message"
+    if [ -f stderr ]; then sed 's/^/  stderr: /' stderr | head -n 5; fi
+  fi
+}
+
+# Starts the program; its output is in the files stdout and stderr.
+run() {
+  "$acf" "$@" >stdout 2>stderr
+  status=$?
+}
+
+# Runs the program: expect_status STATUS ARGUMENTS ...
+expect_status() {
+  local expected=$1
+  shift
+  run "$@"
+  check "exit status $status instead of $expected: $*" [ "$status" -eq "$expected" ]
+}
+
+# Looks for fixed strings in a file: expect_text FILE WHAT TEXT ...
+expect_text() {
+  local file=$1 what=$2 text
+  shift 2
+  for text in "$@"; do
+    check "$what: '$file' does not contain: $text" grep -qF -- "$text" "$file"
+  done
+}
+
+# The error of the last run is one line of the program's form.
+expect_one_line() {
+  check "$1: $(wc -l <stderr) lines on stderr instead of one" [ "$(wc -l <stderr)" -eq 1 ]
+  check "$1: stderr does not begin with the program's name" grep -q '^acf-dealii: ' stderr
+}
+
+# Prints the outcome and ends the script.
+finish() {
+  echo "$n_checks checks, $n_failures failed"
+  [ "$n_failures" -eq 0 ] && [ "$n_checks" -gt 0 ]
+  exit
+}

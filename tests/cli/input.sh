@@ -1,0 +1,175 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 The acf-dealii authors
+#
+# Options that need no run, the models of the project, and errors in the input.
+# shellcheck source=tests/cli/common.sh
+. "$(dirname "$(realpath "$0")")/common.sh"
+
+# --- options without a model ---
+
+expect_status 0 --help
+expect_text stdout help Usage: --validate --set --output-directory --threads --quiet 'Exit status'
+expect_status 0 --version
+version=$(sed -n 's/^project(acf-dealii VERSION \([0-9.]*\).*/\1/p' "$top/CMakeLists.txt")
+check "version: $(cat stdout)" [ "$(cat stdout)" = "acf-dealii $version" ]
+expect_status 0 --print-parameters
+cp stdout default.prm
+
+# Every entry follows a comment with its unit.
+check 'an entry without "Units:"' awk '
+  /^ *#/   { comment = comment " " substr($0, index($0, "#") + 1); next }
+  /^ *set/ { ++n; if (comment !~ /Units: +[^ ].*\.$/) { print; wrong = 1 } }
+           { comment = "" }
+  END      { exit wrong || n < 30 }' default.prm
+
+# The default file is a valid model but for what every model must say.
+set_default() { sed -i "s|^\( *set $1 *=\).*|\1 $2|" default.prm; }
+expect_default_error() {
+  expect_status 2 --validate default.prm
+  expect_one_line "default file without $2"
+  expect_text stderr "default file" "section '$1'" "entry '$2'"
+}
+expect_default_error Bodies/body Mesh
+set_default Mesh box
+set_default Element hexahedron
+expect_default_error Bodies/body 'Box from'
+set_default 'Box from' '0, 0, 0'
+set_default 'Box to' '1, 1, 1'
+set_default Cells '1, 1, 1'
+expect_default_error Bodies/body "Young's modulus"
+set_default "Young's modulus" 1e9
+expect_default_error Bodies/body Density
+set_default Density 1000
+expect_default_error 'Time integration' 'End time'
+set_default 'End time' 1
+expect_default_error 'Time integration' 'Step size'
+set_default 'Step size' 0.1
+expect_default_error Probes/probe Of
+set_default Of 'body: x max'
+expect_default_error Joints/joint Between
+set_default Between 'body: x min, ground'
+expect_status 0 --validate default.prm
+expect_text stdout 'default file' 'default.prm is valid'
+
+# --- the models of the project ---
+
+while read -r model; do
+  expect_status 0 --validate --quiet "$model"
+  check "--validate --quiet writes something for $model" [ ! -s stdout ]
+done < <(find "$top/prm" -name '*.prm' | sort)
+check '--validate writes no files' [ -z "$(find . -name '*-results')" ]
+
+# --- errors in a model file ---
+
+cat >good.prm <<'END'
+subsection Bodies
+  set Names = block
+  subsection block
+    set Mesh            = box
+    set Element         = hexahedron
+    set Box from        = 0, 0, 0
+    set Box to          = 1, 1, 1
+    set Cells           = 1, 1, 1
+    set Young's modulus = 1e9
+    set Density         = 1000
+  end
+end
+subsection Joints
+  set Names = wall
+  subsection wall
+    set Type    = fixed
+    set Between = block: x min, ground
+  end
+end
+subsection Loads
+  set Gravity = 0, 0, -9.81
+end
+subsection Time integration
+  set End time  = 0.1
+  set Step size = 0.01
+end
+subsection Probes
+  set Names = end, wall
+  subsection end
+    set Of = block: x max
+  end
+  subsection wall
+    set Type = reaction
+    set Of   = wall
+  end
+end
+END
+expect_status 0 --validate --quiet good.prm
+
+# Changes good.prm by sed and expects an error in it:
+# expect_error SED_SCRIPT LINE SECTION ENTRY FOUND ALLOWED [TEXT ...]
+# An empty section, entry or line is not looked for.
+expect_error() {
+  local script=$1 line=$2 section=$3 entry=$4 found=$5 allowed=$6
+  shift 6
+  sed "$script" good.prm >wrong.prm
+  check "the sed script changes nothing: $script" [ -n "$(diff good.prm wrong.prm)" ]
+  expect_status 2 --validate wrong.prm
+  expect_one_line "$script"
+  check "$script: output on stdout" [ ! -s stdout ]
+  expect_text stderr "$script" "acf-dealii: wrong.prm:${line:+$line: }" \
+    ${section:+"section '$section'"} ${entry:+"entry '$entry'"} \
+    "found $found" "allowed: $allowed" "$@"
+}
+
+expect_error 's/1000/heavy/' 10 Bodies/block Density "'heavy'" 'a number'
+expect_error 's/1e9/-1/' 9 Bodies/block "Young's modulus" "'-1'" 'a number >= 0'
+expect_error 's/0, 0, -9.81/0, -9.81/' 21 Loads Gravity "'0, -9.81'" "a list of 3 numbers separated by ','"
+expect_error 's/Box to .*/Box to = 1, 1/' 7 Bodies/block 'Box to' "'1, 1'" 'a point of three coordinates'
+expect_error 's/Gravity/Gravitation/' 21 Loads Gravitation 'an unknown entry' "'Gravity'"
+expect_error 's/subsection Loads/subsection Load/' 20 '' '' "the unknown subsection 'Load'" "'Bodies'" "did you mean 'Loads'"
+expect_error '24p' 25 'Time integration' 'End time' 'the entry a second time (first in line 24)' 'each entry once'
+expect_error '/Density/d' 3 Bodies/block Density 'nothing or zero' 'a positive number'
+expect_error '/Mesh/d' 3 Bodies/block Mesh 'no value' 'box, cylinder, or a file'
+expect_error '/End time/d' 23 'Time integration' 'End time' 'nothing or zero' 'a positive number'
+expect_error '/Step size/d' 23 'Time integration' 'Step size' 'nothing or zero' 'a positive number'
+expect_error 's/Step size = 0.01/Step size = 0.2/' 25 'Time integration' 'Step size' 'a step larger' 'a positive number'
+expect_error 's/block: x min/brick: x min/' 17 Joints/wall Between "the body 'brick'" block
+expect_error 's/block: x min/block: left/' 17 Joints/wall Between "surface 'left'" \
+  "'x max', 'x min', 'y max', 'y min', 'z max', 'z min'"
+expect_error 's/block: x min, ground/block: x min/' 17 Joints/wall Between "'block: x min'" "a surface and the ground"
+expect_error 's/fixed/welded/' 16 Joints/wall Type "'welded'" 'one of spherical, mean position, mean rotation, revolute, fixed'
+expect_error 's/= fixed/= revolute/' 15 Joints/wall Axis 'nothing or the zero vector' 'the direction of the axis'
+expect_error 's/block: x max/block: right/' 30 Probes/end Of "surface 'right'" "'x max', 'x min'"
+expect_error 's/Of   = wall/Of = door/' 34 Probes/wall Of "the joint 'door'" wall
+expect_error 's/= box$/= nowhere.geo/;/Box /d;/Cells/d' 4 Bodies/block Mesh "'nowhere.geo': no such file" 'the name of a file that exists'
+expect_error "s|= box$|= $top/tests/data/flat_square.geo|;/Box /d;/Cells/d" 4 Bodies/block Mesh \
+  "'$top/tests/data/flat_square.geo': a mesh without volume elements" 'three-dimensional meshes'
+expect_error "s|= box$|= $top/tests/data/cylinder.geo|;/Box /d;/Cells/d" 5 Bodies/block Element hexahedron 'tetrahedron for this mesh'
+
+sed 's/subsection block/subsection brick/' good.prm >wrong.prm
+expect_status 2 --validate wrong.prm
+expect_one_line 'a subsection without a name'
+expect_text stderr 'a subsection without a name' 'wrong.prm:3:' "'Bodies'" "'brick'" block
+
+expect_status 2 --validate missing.prm
+expect_one_line 'no file'
+expect_text stderr 'no file' 'missing.prm: found no such file' 'allowed: a model file'
+
+# --- errors on the command line ---
+
+# expect_usage_error FOUND ALLOWED ARGUMENTS ...
+expect_usage_error() {
+  local found=$1 allowed=$2
+  shift 2
+  expect_status 2 "$@"
+  expect_one_line "$*"
+  expect_text stderr "$*" 'acf-dealii: command line: ' "$found" "allowed: $allowed"
+}
+
+expect_usage_error 'found no model file' 'one model file'
+expect_usage_error "found --threads '0'" 'an integer >= 1' --threads 0 good.prm
+expect_usage_error "found the unknown option '--validat'" --help --validat good.prm
+expect_usage_error "found --set 'Density'" "--set 'Section/Entry=value'" --set Density good.prm
+expect_usage_error "section 'Bodies/block', entry 'Density': found 'heavy'" 'a number' \
+  --set 'Bodies/block/Density=heavy' good.prm
+expect_usage_error "section 'Bodies/block', entry 'Densities': found an unknown entry" "'Mesh'" \
+  --set 'Bodies/block/Densities=1' good.prm
+
+finish

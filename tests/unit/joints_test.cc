@@ -1,0 +1,553 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/joints.h>
+#include <acf/mechanics/multibody_system.h>
+#include <acf/mechanics/reduced_strain.h>
+
+#include <cmath>
+
+#include <unit/mechanics_test.h>
+
+using namespace ACF;
+using namespace ACF::Testing;
+
+namespace
+{
+  const std::string tetrahedra = "set Element = tetrahedron\n";
+  const std::string hexahedra  = "set Element = hexahedron\n";
+
+  const std::string box = "set Mesh = box\n set Box from = -1, -0.5, 0\n"
+                          "set Box to = 1, 0.5, 3\n set Cells = 2, 1, 2\n";
+
+  std::string
+  cylinder(const unsigned int n_cells_across)
+  {
+    return "set Mesh = cylinder\n set Cylinder from = 0, 0, 0\n"
+           "set Cylinder to = 0, 0, 1.2\n set Cylinder radius = 0.5\n"
+           "set Cells = " +
+           std::to_string(n_cells_across) + ", 2\n";
+  }
+
+  BodyDiscretization
+  discretization_of(const std::string &entries)
+  {
+    return BodyDiscretization(mesh_of(entries));
+  }
+
+  std::set<types::boundary_id>
+  surface(const BodyDiscretization &body, const std::string &name)
+  {
+    return body.mesh().surface(name, "", "");
+  }
+
+  /** A body turned and placed somewhere. */
+  BodyParameters
+  placed_body(const std::string &name, const std::string &entries)
+  {
+    BodyParameters parameters = body_parameters(name, entries);
+    parameters.position       = Point<dim>(0.7, -2, 0.3);
+    parameters.rotation       = Vector3({0.4, -1.1, 2});
+    return parameters;
+  }
+
+  JointParameters
+  joint_parameters(const std::string &type,
+                   const std::string &between,
+                   const std::string &directions = "",
+                   const Vector3 &axis           = Vector3())
+  {
+    JointParameters joint;
+    joint.name       = "joint";
+    joint.type       = type;
+    joint.between    = between;
+    joint.directions = directions;
+    joint.axis       = axis;
+    joint.check();
+    return joint;
+  }
+
+  std::string
+  text(const Vector3 &v)
+  {
+    std::ostringstream out;
+    out.precision(17);
+    out << v[0] << ',' << v[1] << ',' << v[2];
+    return out.str();
+  }
+
+  /** A system of one placed body with one joint, and the joint's centre. */
+  struct JointedBody
+  {
+    MultibodySystem system;
+    NodalVector start;
+    Vector3 centre;
+
+    JointedBody(const JointParameters &joint, const std::string &entries)
+      : system({placed_body("b", entries)}, {joint}, LoadParameters(), ".")
+      , start(system.initial_state().positions[0])
+    {
+      const std::string name =
+        joint.between.substr(3, joint.between.find(',') - 3);
+      const BodyDiscretization &body = system.bodies()[0].discretization();
+      centre = surface_mean(body, surface(body, name))(start);
+    }
+
+    /** Residual after turning about the centre, then moving. */
+    Eigen::VectorXd
+    residual(const Vector3 &rotation, const Vector3 &translation) const
+    {
+      const Matrix3 Q = rotation_matrix(rotation);
+      return system.constraint_residual(
+        {transformed(start, [&](const Vector3 &x) {
+          return centre + translation + Q * (x - centre);
+        })});
+    }
+
+    /** Derivative of the residual, rows x 3, by central differences. */
+    Eigen::MatrixXd
+    derivative(const bool of_rotation) const
+    {
+      const double h = 1e-5;
+      Eigen::MatrixXd result(system.n_constraints(), dim);
+      for (unsigned int i = 0; i < dim; ++i)
+        {
+          Vector3 step;
+          step[i]         = h;
+          const Vector3 r = of_rotation ? step : Vector3();
+          const Vector3 t = of_rotation ? Vector3() : step;
+          result.col(i)   = (residual(r, t) - residual(-r, -t)) / (2 * h);
+        }
+      return result;
+    }
+  };
+
+  Eigen::Vector3d
+  to_eigen(const Vector3 &v)
+  {
+    return Eigen::Vector3d(v[0], v[1], v[2]);
+  }
+
+  double
+  largest(const Eigen::MatrixXd &matrix)
+  {
+    return matrix.size() > 0 ? matrix.cwiseAbs().maxCoeff() : 0.;
+  }
+
+  Vector3
+  unit(const Vector3 &v)
+  {
+    return v / v.norm();
+  }
+} // namespace
+
+TEST(Functionals, RectangleAndDisc)
+{
+  for (const std::string &element : {tetrahedra, hexahedra})
+    {
+      const BodyDiscretization body = discretization_of(box + element);
+      const SurfaceGeometry face =
+        surface_geometry(body, surface(body, "x max"));
+      EXPECT_NEAR(face.area, 3, 1e-13);
+      EXPECT_LT((face.centroid - Vector3({1, 0, 1.5})).norm(), 1e-14);
+      Matrix3 J;
+      J[1][1] = 1. / 12;
+      J[2][2] = 9. / 12;
+      EXPECT_LT((face.second_moment - J).norm(), 1e-14);
+      EXPECT_NEAR(face.extent(Vector3({0, 0.6, 0.8})),
+                  std::sqrt(0.36 / 12 + 0.64 * 0.75),
+                  1e-14);
+      EXPECT_NEAR(face.extent(Vector3({1, 0, 0})), 0, 1e-7);
+      EXPECT_TRUE(face.resolves(Vector3({0, 0.6, 0.8})));
+      EXPECT_FALSE(face.resolves(Vector3({1, 0, 0})));
+      EXPECT_FALSE(face.resolves(unit(Vector3({0.01, 1, 0}))));
+      EXPECT_LT((face.solve_second_moment(Vector3({5, 1, 9})) -
+                 Vector3({0, 12, 12}))
+                  .norm(),
+                1e-11);
+    }
+
+  // area and J of discs and of the lateral surface converge with order 2
+  const double radius = 0.5, length = 1.2, pi = numbers::PI;
+  for (const std::string &name : {"start", "side"})
+    {
+      std::vector<double> area_errors, moment_errors;
+      for (const unsigned int n : {4, 8})
+        {
+          const BodyDiscretization body =
+            discretization_of(cylinder(n) + hexahedra);
+          const SurfaceGeometry geometry =
+            surface_geometry(body, surface(body, name));
+          const bool side   = (name == "side");
+          const double area =
+            side ? 2 * pi * radius * length : pi * radius * radius;
+          Matrix3 J;
+          J[0][0] = J[1][1] = radius * radius / (side ? 2 : 4);
+          J[2][2]           = side ? length * length / 12 : 0;
+          area_errors.push_back(std::abs(geometry.area / area - 1));
+          moment_errors.push_back((geometry.second_moment - J).norm() /
+                                  J.norm());
+          EXPECT_LT((geometry.centroid - Vector3({0, 0, side ? 0.6 : 0}))
+                      .norm(),
+                    1e-14);
+        }
+      for (const auto &errors : {area_errors, moment_errors})
+        {
+          EXPECT_NEAR(std::log2(errors[0] / errors[1]), 2, 0.15);
+          EXPECT_LT(errors[1], 0.05);
+        }
+      report(std::string(name) + " of a cylinder, orders of area and moments",
+             std::to_string(std::log2(area_errors[0] / area_errors[1])) + ", " +
+               std::to_string(
+                 std::log2(moment_errors[0] / moment_errors[1])));
+    }
+}
+
+TEST(Functionals, AffineMotions)
+{
+  Random random;
+  double error = 0;
+  for (const std::string &element : {tetrahedra, hexahedra})
+    for (const auto &[mesh, name, normal] :
+         std::vector<std::tuple<std::string, std::string, int>>{
+           {box, "y min", 1}, {cylinder(3), "end", 2}, {cylinder(3), "side", -1}})
+      {
+        const BodyDiscretization body = discretization_of(mesh + element);
+        const auto ids                = surface(body, name);
+        const SurfaceGeometry geometry = surface_geometry(body, ids);
+        for (unsigned int n = 0; n < 5; ++n)
+          {
+            const Matrix3 F     = random.matrix(1);
+            const Vector3 t     = random.vector(1);
+            const NodalVector x = transformed(body.reference_positions(),
+                                              [&](const Vector3 &X) {
+                                                return t + F * X;
+                                              });
+            const Vector3 v = random.vector(1);
+            Vector3 direction = random.vector(1);
+            if (normal >= 0)
+              direction[normal] = 0;
+            direction /= direction.norm();
+
+            error = std::max(error,
+                             (surface_mean(body, ids)(x) - t -
+                              F * geometry.centroid)
+                               .norm());
+            error = std::max(error,
+                             (surface_moment(body, ids, v)(x) -
+                              F * (geometry.second_moment * v))
+                               .norm());
+            error = std::max(error,
+                             (surface_director(body, ids, direction)(x) -
+                              F * direction)
+                               .norm());
+
+            // the adjoint, and a sum
+            const NodalFunctional mean  = surface_mean(body, ids);
+            const NodalFunctional other = surface_moment(body, ids, v);
+            const Vector3 force         = random.vector(1);
+            NodalVector nodal(x.size());
+            mean.add_adjoint(force, nodal);
+            mean.add_adjoint(force, nodal);
+            EXPECT_NEAR(nodal * x, 2 * force * mean(x), 1e-13);
+            const Vector3 sum = linear_combination(mean, -2.5, other)(x);
+            EXPECT_LT((sum - mean(x) + 2.5 * other(x)).norm(), 1e-13);
+          }
+      }
+  EXPECT_LT(error, 2e-13);
+  report("surface functionals of affine motions", error);
+}
+
+TEST(Functionals, MaterialPoints)
+{
+  Random random;
+  const Matrix3 A = random.matrix(1), B = random.matrix(1);
+  const auto quadratic = [&](const Vector3 &X) {
+    return A * X + (X[0] * X[1] - X[2] * X[2]) * Vector3({1, -2, 0.5}) +
+           (X * (B * X)) * Vector3({0.3, 1, 1});
+  };
+  double error = 0;
+  for (const std::string &entries :
+       {box + tetrahedra, box + hexahedra, cylinder(3) + tetrahedra})
+    {
+      const BodyDiscretization body = discretization_of(entries);
+      const NodalVector &X          = body.reference_positions();
+      const NodalVector x           = transformed(X, quadratic);
+
+      // random points, and points on vertices, edges, faces and in cells
+      std::vector<Point<dim>> points;
+      for (const auto &cell : body.dof_handler().active_cell_iterators())
+        {
+          points.push_back(cell->center());
+          for (const auto &face : cell->face_iterators())
+            points.push_back(face->center());
+          for (const unsigned int l : cell->line_indices())
+            points.push_back(cell->line(l)->center());
+          Point<dim> inside;
+          double sum = 0;
+          for (const unsigned int v : cell->vertex_indices())
+            {
+              const double weight = 0.5 + random.number(0.5);
+              inside += weight * Vector3(cell->vertex(v));
+              sum += weight;
+            }
+          points.push_back(inside / sum);
+        }
+      for (const Point<dim> &point : points)
+        error = std::max(error,
+                         (material_point(body, point)(x) -
+                          quadratic(Vector3(point)))
+                           .norm());
+
+      for (unsigned int a = 0; a < body.n_nodes(); ++a)
+        {
+          const NodalFunctional point =
+            material_point(body, Point<dim>(node_value(X, a)));
+          for (unsigned int k = 0; k < point.nodes.size(); ++k)
+            EXPECT_NEAR(point.weights[k], point.nodes[k] == a ? 1 : 0, 1e-12);
+        }
+    }
+  EXPECT_LT(error, 1e-12);
+  report("quadratic fields at material points", error);
+
+  const BodyDiscretization body = discretization_of(box + hexahedra);
+  try
+    {
+      material_point(body, Point<dim>(1.25, 0.5, 3));
+      ADD_FAILURE() << "a point outside was accepted";
+    }
+  catch (const SimulationError &problem)
+    {
+      EXPECT_NE(std::string(problem.what()).find("0.25"), std::string::npos)
+        << problem.what();
+    }
+}
+
+TEST(Joints, RowsAndStart)
+{
+  const Vector3 axis = placed_body("b", box).rotation; // any vector
+  struct Case
+  {
+    std::string type, directions;
+    Vector3 axis;
+    unsigned int n_rows;
+  };
+  const std::vector<Case> cases = {
+    {"spherical", "", Vector3(), 3},
+    {"mean position", "", Vector3(), 3},
+    {"mean position", "y", Vector3(), 1},
+    {"mean position", "1,0,0; 0,1,1", Vector3(), 2},
+    {"mean rotation", "", Vector3(), 3},
+    {"mean rotation", "z", Vector3(), 1},
+    {"mean rotation", "1,2,3", Vector3(), 1},
+    {"mean rotation", "x, y, z", Vector3(), 3},
+    {"fixed", "", Vector3(), 6},
+    {"revolute", "", axis, 5}};
+  for (const Case &c : cases)
+    {
+      // the lateral surface resolves all directions
+      const JointedBody body(
+        joint_parameters(c.type, "b: side, ground", c.directions, c.axis),
+        cylinder(3) + tetrahedra);
+      EXPECT_EQ(body.system.n_constraints(), c.n_rows) << c.type;
+      EXPECT_EQ(body.system.joints()[0].n_constraints(), c.n_rows) << c.type;
+      EXPECT_LT(largest(body.residual(Vector3(), Vector3())), 1e-14) << c.type;
+    }
+}
+
+TEST(Joints, PositionsAndGuides)
+{
+  const Vector3 across = unit(Vector3({1, 1, 0}));
+  const Vector3 along({0.1, -0.1, 0.7}), turn({0.3, 2, -1});
+  const JointedBody guide(
+    joint_parameters("mean position", "ground, b: x max", "1,1,0"),
+    box + hexahedra);
+  EXPECT_LT(largest(guide.residual(turn, along)), 1e-14);
+  EXPECT_NEAR(guide.residual(turn, along + 0.3 * across)(0), 0.3, 1e-14);
+  EXPECT_NEAR(guide.residual(turn, Vector3({1, 0, 0}))(0),
+              1 / std::sqrt(2.),
+              1e-14);
+
+  const JointedBody rail(
+    joint_parameters("mean position", "ground, b: x max", "1,2,2; 0,3,-3"),
+    box + hexahedra);
+  const Vector3 free = cross_product_3d(Vector3({1, 2, 2}), Vector3({0, 1, -1}));
+  EXPECT_LT(largest(rail.residual(turn, 0.4 * free)), 1e-14);
+  EXPECT_NEAR(rail.residual(turn, Vector3({3, 0, 0}))(0), 1, 1e-14);
+  EXPECT_NEAR(rail.residual(turn, Vector3({3, 1, 0}))(1), std::sqrt(0.5), 1e-14);
+
+  for (const std::string &entries : {box + hexahedra, box + tetrahedra})
+    {
+      const JointedBody ball(joint_parameters("spherical", "b: z min, ground"),
+                             entries);
+      EXPECT_LT(largest(ball.residual(turn, Vector3())), 1e-14);
+      const Eigen::VectorXd moved = ball.residual(turn, along);
+      EXPECT_LT((moved - to_eigen(along)).norm(), 1e-14);
+    }
+}
+
+TEST(Joints, HingesTurnAboutTheirAxisOnly)
+{
+  Random random;
+  double free_error = 0, angle_error = 0;
+  const Matrix3 R0 = rotation_matrix(placed_body("b", box).rotation);
+  // axes in the body: normal to a plane surface, in it, and anything on a
+  // curved one
+  const std::vector<std::tuple<std::string, std::string, Vector3>> cases = {
+    {box, "x max", Vector3({1, 0, 0})},
+    {box, "x max", Vector3({0, 0.6, 0.8})},
+    {box, "y min", Vector3({0, -1, 0})},
+    {cylinder(3), "start", Vector3({0, 0, 1})},
+    {cylinder(3), "side", Vector3({0, 0, 1})},
+    {cylinder(3), "side", unit(Vector3({1, 2, -2}))}};
+  for (const std::string &element : {tetrahedra, hexahedra})
+    for (const auto &[mesh, name, axis_in_body] : cases)
+      for (const bool revolute : {true, false})
+        {
+          const Vector3 axis = R0 * axis_in_body;
+          const Vector3 t1   = unit(
+            cross_product_3d(axis, Vector3({0.3, 0.2, std::sqrt(0.87)})));
+          const Vector3 t2          = cross_product_3d(axis, t1);
+          const std::string between = "b: " + name + ", ground";
+          const JointedBody hinge(
+            revolute
+              ? joint_parameters("revolute", between, "", 2.5 * axis)
+              : joint_parameters("mean rotation",
+                                 between,
+                                 text(t1 + 0.5 * t2) + "; " + text(t2)),
+            mesh + element);
+          const unsigned int n_rows = hinge.system.n_constraints();
+          ASSERT_EQ(n_rows, revolute ? 5 : 2);
+
+          for (unsigned int n = 0; n < 5; ++n)
+            free_error =
+              std::max(free_error,
+                       largest(hinge.residual(random.number(6) * axis,
+                                              revolute ? Vector3()
+                                                       : random.vector(1))));
+
+          // to first order: positions see translations only, and the two rows
+          // of the hinge together the angle across the axis
+          const Eigen::MatrixXd of_rotation    = hinge.derivative(true);
+          const Eigen::MatrixXd of_translation = hinge.derivative(false);
+          if (revolute)
+            {
+              EXPECT_LT(largest(of_rotation.topRows(3)), 1e-9);
+              EXPECT_LT(largest(of_translation.topRows(3) -
+                                Eigen::Matrix3d::Identity()),
+                        1e-9);
+            }
+          EXPECT_LT(largest(of_translation.bottomRows(2)), 1e-9);
+          const Eigen::Vector3d e = to_eigen(axis);
+          const Eigen::MatrixXd expected =
+            Eigen::Matrix3d::Identity() - e * e.transpose();
+          angle_error = std::max(angle_error,
+                                 largest(of_rotation.bottomRows(2).transpose() *
+                                           of_rotation.bottomRows(2) -
+                                         expected));
+
+          // and the angle itself, not only its derivative
+          const double angle = 1e-3;
+          const Eigen::VectorXd r =
+            hinge.residual(angle * unit(t1 - 0.7 * t2), Vector3());
+          EXPECT_NEAR(r.tail(2).norm(), std::sin(angle), 1e-13);
+        }
+  EXPECT_LT(free_error, 1e-14);
+  EXPECT_LT(angle_error, 1e-9);
+  report("hinges: residual of free rotations", free_error);
+  report("hinges: derivative by the angle", angle_error);
+}
+
+TEST(Joints, MeanRotationIsTheAngle)
+{
+  double error = 0;
+  for (const std::string &element : {tetrahedra, hexahedra})
+    for (const auto &[mesh, name] :
+         std::vector<std::pair<std::string, std::string>>{
+           {box, "x min"}, {box, "z max"}, {cylinder(3), "side"}})
+      {
+        const std::string between = "b: " + name + ", ground";
+        const JointedBody all(joint_parameters("mean rotation", between),
+                              mesh + element);
+        error = std::max(error,
+                         largest(all.derivative(true) -
+                                 Eigen::Matrix3d::Identity()));
+        error = std::max(error, largest(all.derivative(false)));
+
+        const Vector3 axis = unit(Vector3({1, -2, 3}));
+        const JointedBody one(
+          joint_parameters("mean rotation", between, text(3. * axis)),
+          mesh + element);
+        error = std::max(error,
+                         largest(one.derivative(true) -
+                                 to_eigen(axis).transpose()));
+
+        const JointedBody clamp(joint_parameters("fixed", between),
+                                mesh + element);
+        Eigen::MatrixXd rotation(6, 3), translation(6, 3);
+        rotation << Eigen::Matrix3d::Zero(), Eigen::Matrix3d::Identity();
+        translation << Eigen::Matrix3d::Identity(), Eigen::Matrix3d::Zero();
+        error = std::max(error, largest(clamp.derivative(true) - rotation));
+        error = std::max(error, largest(clamp.derivative(false) - translation));
+      }
+  EXPECT_LT(error, 1e-9);
+  report("mean rotation rows: derivative by the angle", error);
+}
+
+TEST(Joints, Errors)
+{
+  const auto make = [](const JointParameters &joint) {
+    return [joint]() {
+      MultibodySystem({body_parameters("arm", box + hexahedra),
+                       body_parameters("leg", box + hexahedra)},
+                      {joint},
+                      LoadParameters(),
+                      ".");
+    };
+  };
+  const auto check = [](const std::string &type,
+                        const std::string &directions,
+                        const Vector3 &axis) {
+    return [=]() {
+      joint_parameters(type, "arm: x max, ground", directions, axis);
+    };
+  };
+  const std::string spherical = "spherical";
+
+  expect_input_error(make(joint_parameters(spherical, "foot: x max, ground")),
+                     {"Joints/joint", "'Between'", "'foot'", "arm, leg"});
+  expect_input_error(make(joint_parameters(spherical, "arm: top, ground")),
+                     {"Joints/joint", "'Between'", "'top'", "'x max', 'x min'"});
+  for (const std::string between :
+       {"ground, ground", "ground", "", "arm: x max"})
+    expect_input_error(make(joint_parameters(spherical, between)),
+                       {"Joints/joint",
+                        "'Between'",
+                        between.empty() ? "nothing" : "'" + between + "'",
+                        "BODY: SURFACE, ground"});
+  expect_input_error(make(joint_parameters(spherical, "arm x max, ground")),
+                     {"'Between'", "'arm x max'", "BODY: SURFACE"});
+
+  for (const std::string directions :
+       {"x, x", "1,0,0; 2,0,0", "1,0,0; 0,1,0; 1,1,0", "0,0,0", "1,2", "x, w"})
+    for (const std::string type : {"mean position", "mean rotation"})
+      expect_input_error(check(type, directions, Vector3()),
+                         {"Joints/joint",
+                          "'Directions'",
+                          "'" + directions + "'",
+                          "linearly independent"});
+  expect_input_error(check("fixed", "x", Vector3()), {"'Directions'", "'fixed'"});
+  expect_input_error(check("revolute", "", Vector3()), {"'Axis'", "zero vector"});
+  expect_input_error(check("fixed", "", Vector3({1, 0, 0})),
+                     {"'Axis'", "'revolute'"});
+
+  expect_input_error(make(joint_parameters("revolute",
+                                           "arm: x max, ground",
+                                           "",
+                                           Vector3({1, 0, 0.5}))),
+                     {"Joints/joint", "'Axis'", "oblique"});
+  expect_input_error(make(joint_parameters("mean rotation",
+                                           "arm: x max, ground",
+                                           "1,0,0.5; 0,1,0")),
+                     {"Joints/joint", "'Directions'", "oblique"});
+}

@@ -1,0 +1,437 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/reduced_strain.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <cmath>
+#include <limits>
+#include <list>
+
+#include <unit/mechanics_test.h>
+
+using namespace ACF;
+using namespace ACF::Testing;
+
+namespace
+{
+  /** A body in a deformed state, with what the force needs. */
+  struct Example
+  {
+    std::string name;
+    BodyDiscretization discretization;
+    BodyOperators body;
+
+    Example(const std::string &name, const MeshData &data)
+      : name(name)
+      , discretization(discretize(data))
+      , body(assemble_body_operators(discretization, test_material()))
+    {}
+
+    /** A scale of forces: E V / l. */
+    double
+    force_scale() const
+    {
+      return test_material().youngs_modulus * body.volume / body.length;
+    }
+  };
+
+  const std::list<Example> &
+  examples()
+  {
+    static const std::list<Example> list = []() {
+      const Point<dim> from(0.2, -0.1, 0.4), to(1, 0.2, 0.6);
+      std::list<Example> all;
+      all.emplace_back(
+        "hexahedra",
+        distorted(generate_box(from, to, {{3, 2, 1}}, ReferenceCells::Hexahedron),
+                  0.02));
+      all.emplace_back(
+        "tetrahedra",
+        distorted(generate_box(from, to, {{2, 1, 1}}, ReferenceCells::Tetrahedron),
+                  0.02));
+      return all;
+    }();
+    return list;
+  }
+
+  const std::vector<std::pair<RotationMeasure, std::string>> measures = {
+    {RotationMeasure::polar, "polar"},
+    {RotationMeasure::three_points, "three points"}};
+
+  /** Bending, twist and stretch of some ten per cent, and small-scale noise. */
+  NodalVector
+  deformed(const Example &example, Random &random)
+  {
+    const Matrix3 Q       = random.rotation();
+    const Matrix3 stretch = identity() + random.matrix(0.1);
+    const Vector3 bend = random.vector(0.3), t = random.vector(3);
+    NodalVector x = transformed(example.body.reference_positions,
+                                [&](const Vector3 &X) {
+                                  const Vector3 Y =
+                                    rotation_matrix(Vector3(
+                                      {0.4 * X[0], 0, 0.2 * X[1]})) *
+                                    (stretch * X);
+                                  return t + Q * (Y + X[0] * X[0] * bend);
+                                });
+    x += random.nodal_vector(x.size(), 2e-3);
+    return x;
+  }
+
+  struct Force
+  {
+    std::optional<double> energy;
+    NodalVector value;
+  };
+
+  Force
+  force_of(const Example &example,
+           const RotationMeasure measure,
+           const NodalVector &x)
+  {
+    Force force;
+    NodalVector scratch(x.size());
+    force.value.reinit(x.size());
+    force.energy =
+      reduced_strain_force(example.body, measure, x, force.value, scratch);
+    return force;
+  }
+
+  /** W = q . A q / 2 */
+  double
+  energy_of(const BodyOperators &body,
+            const RotationMeasure measure,
+            const NodalVector &x)
+  {
+    const Matrix3 R =
+      body_rotation(mean_deformation_gradient(body, x), measure)->rotation;
+    NodalVector q(x.size()), Aq(x.size());
+    co_rotated_displacement(body, x, R, q);
+    body.stiffness_matrix.vmult(Aq, q);
+    return q * Aq / 2;
+  }
+
+  /** The same as integral of the energy density of Sym(R^T grad x - I), with
+   * the quadrature of the stiffness. */
+  double
+  energy_by_elements(const Example &example,
+                     const RotationMeasure measure,
+                     const NodalVector &x)
+  {
+    const BodyDiscretization &body = example.discretization;
+    FEValues<dim> values(body.mesh().mapping(),
+                         body.finite_element(),
+                         body.mesh().cell_quadrature(
+                           body.mesh().is_simplex() ? 2 : 4),
+                         update_gradients | update_JxW_values);
+    const FEValuesExtractors::Vector u(0);
+    std::vector<Matrix3> gradients(values.n_quadrature_points);
+    const Material material = test_material();
+
+    Matrix3 mean;
+    double volume = 0;
+    for (const auto &cell : body.dof_handler().active_cell_iterators())
+      {
+        values.reinit(cell);
+        values[u].get_function_gradients(x, gradients);
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            mean += values.JxW(q) * gradients[q];
+            volume += values.JxW(q);
+          }
+      }
+    mean /= volume;
+    EXPECT_LT((mean - mean_deformation_gradient(example.body, x)).norm(),
+              1e-12);
+    const Matrix3 R = body_rotation(mean, measure)->rotation;
+
+    double energy = 0;
+    for (const auto &cell : body.dof_handler().active_cell_iterators())
+      {
+        values.reinit(cell);
+        values[u].get_function_gradients(x, gradients);
+        for (const unsigned int q : values.quadrature_point_indices())
+          {
+            const SymmetricTensor<2, dim> strain =
+              symmetrize(transpose(R) * gradients[q] - identity());
+            energy += (material.lambda() / 2 * std::pow(trace(strain), 2) +
+                       material.mu() * strain * strain) *
+                      values.JxW(q);
+          }
+      }
+    return energy;
+  }
+
+  Vector3
+  resultant(const NodalVector &force)
+  {
+    Vector3 sum;
+    for (unsigned int a = 0; a < force.size() / dim; ++a)
+      sum += node_value(force, a);
+    return sum;
+  }
+
+  Vector3
+  moment(const NodalVector &force, const NodalVector &x, const Vector3 &point)
+  {
+    Vector3 sum;
+    for (unsigned int a = 0; a < force.size() / dim; ++a)
+      sum += cross_product_3d(node_value(x, a) - point, node_value(force, a));
+    return sum;
+  }
+} // namespace
+
+TEST(ReducedStrain, MeansAndCoRotatedDisplacement)
+{
+  Random random;
+  for (const Example &example : examples())
+    for (unsigned int n = 0; n < 5; ++n)
+      {
+        const BodyOperators &body = example.body;
+        const Matrix3 R = random.rotation(), F = R * (identity() + random.matrix(0.3));
+        const Vector3 t     = random.vector(2);
+        const NodalVector x = transformed(body.reference_positions,
+                                          [&](const Vector3 &X) {
+                                            return t + F * X;
+                                          });
+        EXPECT_LT((mean_deformation_gradient(body, x) - F).norm(), 1e-12);
+        EXPECT_LT((mass_mean(body, x) - t - F * body.centre).norm(), 1e-13);
+
+        NodalVector q(x.size());
+        co_rotated_displacement(body, x, R, q);
+        for (unsigned int a = 0; a < body.n_nodes; ++a)
+          {
+            const Vector3 arm =
+              node_value(body.reference_positions, a) - body.centre;
+            EXPECT_LT((node_value(q, a) - transpose(R) * (F * arm) + arm).norm(),
+                      1e-13);
+          }
+      }
+}
+
+TEST(ReducedStrain, EnergyAgainstIntegralOverElements)
+{
+  Random random;
+  double error = 0, density = 0;
+  for (const Example &example : examples())
+    for (const auto &measure : measures)
+      for (unsigned int n = 0; n < 5; ++n)
+        {
+          const NodalVector x = deformed(example, random);
+          const double exact  = energy_by_elements(example, measure.first, x);
+          const double energy = *force_of(example, measure.first, x).energy;
+          error               = std::max(error, std::abs(energy / exact - 1));
+          density             = std::max(density,
+                             energy / (test_material().youngs_modulus *
+                                       example.body.volume));
+        }
+  EXPECT_LT(error, 1e-11);
+  EXPECT_GT(density, 1e-3); // the deformations are noticeable
+  report("energy against the integral over the elements", error);
+  report("largest energy of the random deformations over E V", density);
+}
+
+TEST(ReducedStrain, ForceIsTheGradientOfTheEnergy)
+{
+  Random random;
+  for (const Example &example : examples())
+    for (const auto &[measure, name] : measures)
+      {
+        double error = 0, error_without_rotation = 1;
+        for (unsigned int n = 0; n < 3; ++n)
+          {
+            const NodalVector x     = deformed(example, random);
+            const NodalVector force = force_of(example, measure, x).value;
+
+            const double h = 1e-5 * example.body.length;
+            NodalVector gradient(x.size()), moved(x);
+            for (unsigned int k = 0; k < x.size(); ++k)
+              {
+                moved[k]           = x[k] + h;
+                const double right = energy_of(example.body, measure, moved);
+                moved[k]           = x[k] - h;
+                const double left  = energy_of(example.body, measure, moved);
+                moved[k]           = x[k];
+                gradient[k]        = (right - left) / (2 * h);
+              }
+            error = std::max(error, relative_difference(force, gradient));
+
+            // R A q alone, without the variation of the rotation
+            const Matrix3 R =
+              body_rotation(mean_deformation_gradient(example.body, x), measure)
+                ->rotation;
+            NodalVector q(x.size()), Aq(x.size());
+            co_rotated_displacement(example.body, x, R, q);
+            example.body.stiffness_matrix.vmult(Aq, q);
+            const NodalVector incomplete =
+              transformed(Aq, [&](const Vector3 &k) { return R * k; });
+            error_without_rotation =
+              std::min(error_without_rotation,
+                       relative_difference(incomplete, gradient));
+          }
+        const std::string label = example.name + ", " + name;
+        EXPECT_LT(error, 1e-7) << label;
+        EXPECT_GT(error_without_rotation, 1e-4) << label;
+        report(label + ", force against differences of the energy", error);
+        report(label + ", the same without the term P g_a",
+               error_without_rotation);
+      }
+}
+
+TEST(ReducedStrain, RigidMotionsAreFree)
+{
+  Random random;
+  double largest_force = 0, largest_energy = 0;
+  for (const Example &example : examples())
+    for (const auto &measure : measures)
+      for (unsigned int n = 0; n < 20; ++n)
+        {
+          const Matrix3 Q     = random.rotation();
+          const Vector3 t     = random.vector(10);
+          const NodalVector x = transformed(example.body.reference_positions,
+                                            [&](const Vector3 &X) {
+                                              return t + Q * X;
+                                            });
+          const Force force   = force_of(example, measure.first, x);
+          largest_force =
+            std::max(largest_force,
+                     force.value.linfty_norm() / example.force_scale());
+          largest_energy =
+            std::max(largest_energy,
+                     std::abs(*force.energy) / (test_material().youngs_modulus *
+                                                example.body.volume));
+        }
+  // round-off of positions ten lengths away, and some ten nodes per length
+  EXPECT_LT(largest_force, 1e-12);
+  EXPECT_LT(largest_energy, 1e-25);
+  report("force of rigid motions over E V / l", largest_force);
+  report("energy of rigid motions over E V", largest_energy);
+}
+
+TEST(ReducedStrain, IndependentOfTheObserver)
+{
+  Random random;
+  double energy_error = 0, force_error = 0;
+  for (const Example &example : examples())
+    for (const auto &measure : measures)
+      for (unsigned int n = 0; n < 5; ++n)
+        {
+          const NodalVector x = deformed(example, random);
+          const Matrix3 Q     = random.rotation();
+          const Vector3 t     = random.vector(1);
+          const auto rotate   = [&](const Vector3 &v) { return Q * v; };
+          const Force here    = force_of(example, measure.first, x);
+          const Force there   = force_of(example,
+                                       measure.first,
+                                       transformed(x, [&](const Vector3 &v) {
+                                         return t + Q * v;
+                                       }));
+          energy_error =
+            std::max(energy_error, std::abs(*there.energy / *here.energy - 1));
+          force_error =
+            std::max(force_error,
+                     relative_difference(there.value,
+                                         transformed(here.value, rotate)));
+        }
+  EXPECT_LT(energy_error, 1e-12);
+  EXPECT_LT(force_error, 1e-12);
+  report("change of the energy by a superposed motion", energy_error);
+  report("change of the force by a superposed motion", force_error);
+}
+
+TEST(ReducedStrain, NoResultant)
+{
+  Random random;
+  double force_sum = 0, moment_sum = 0, incomplete = 1;
+  for (const Example &example : examples())
+    for (const auto &measure : measures)
+      for (unsigned int n = 0; n < 5; ++n)
+        {
+          const NodalVector x     = deformed(example, random);
+          const NodalVector force = force_of(example, measure.first, x).value;
+          const double scale      = force.l1_norm();
+          force_sum  = std::max(force_sum, resultant(force).norm() / scale);
+          moment_sum = std::max(moment_sum,
+                                moment(force, x, random.vector(5)).norm() /
+                                  (scale * example.body.length));
+
+          // R A q has a moment: it is the other term that balances it
+          const Matrix3 R =
+            body_rotation(mean_deformation_gradient(example.body, x),
+                          measure.first)
+              ->rotation;
+          NodalVector q(x.size()), Aq(x.size());
+          co_rotated_displacement(example.body, x, R, q);
+          example.body.stiffness_matrix.vmult(Aq, q);
+          const NodalVector first =
+            transformed(Aq, [&](const Vector3 &k) { return R * k; });
+          incomplete = std::min(incomplete,
+                                moment(first, x, Vector3()).norm() /
+                                  (scale * example.body.length));
+        }
+  EXPECT_LT(force_sum, 1e-13);
+  EXPECT_LT(moment_sum, 1e-13);
+  EXPECT_GT(incomplete, 1e-6);
+  report("resultant of the force, relative", force_sum);
+  report("moment of the force, relative", moment_sum);
+  report("moment of the force without the term P g_a", incomplete);
+}
+
+TEST(ReducedStrain, SmallDeformationsAreLinear)
+{
+  Random random;
+  for (const Example &example : examples())
+    for (const auto &[measure, name] : measures)
+      {
+        const BodyOperators &body = example.body;
+        const Matrix3 Q           = random.rotation();
+        const Matrix3 G           = random.matrix(0.3);
+        const NodalVector u =
+          transformed(body.reference_positions, [&](const Vector3 &X) {
+            return G * X + X[0] * X[1] * Vector3({0.2, 0.3, -0.1});
+          });
+        NodalVector Au(u.size());
+        body.stiffness_matrix.vmult(Au, u);
+        const NodalVector linear =
+          transformed(Au, [&](const Vector3 &k) { return Q * k; });
+
+        std::vector<double> errors;
+        for (const double size : {1e-2, 1e-3, 1e-4})
+          {
+            NodalVector x(body.reference_positions);
+            x.add(size, u);
+            x = transformed(x, [&](const Vector3 &v) { return Q * v; });
+            NodalVector force = force_of(example, measure, x).value;
+            force /= size;
+            errors.push_back(relative_difference(force, linear));
+          }
+        // the error of the force itself is one order higher
+        for (unsigned int k = 1; k < errors.size(); ++k)
+          EXPECT_NEAR(std::log10(errors[k - 1] / errors[k]), 1, 0.05);
+        report(example.name + ", " + name +
+                 ", order of the error of the linear force",
+               1 + std::log10(errors[1] / errors[2]));
+      }
+}
+
+TEST(ReducedStrain, NothingForInvertedBodies)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const Example &example : examples())
+    for (const auto &measure : measures)
+      {
+        const NodalVector &X = example.body.reference_positions;
+        for (const double factor : {-1., 0.})
+          {
+            const NodalVector x = transformed(X, [&](const Vector3 &v) {
+              return Vector3({v[0], factor * v[1], v[2]});
+            });
+            EXPECT_FALSE(force_of(example, measure.first, x).energy);
+          }
+        NodalVector x(X);
+        x[5] = nan;
+        EXPECT_FALSE(force_of(example, measure.first, x).energy);
+        EXPECT_TRUE(force_of(example, measure.first, X).energy);
+      }
+}

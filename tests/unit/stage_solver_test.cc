@@ -1,0 +1,521 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+#include <acf/solvers/stage_solver.h>
+
+#include <cmath>
+#include <limits>
+
+#include <unit/mechanics_test.h>
+
+using namespace ACF;
+using namespace ACF::Testing;
+
+namespace
+{
+  using Complex = std::complex<double>;
+
+  const std::string box = "set Mesh = box\n set Box from = 0, 0, 0\n"
+                          "set Box to = 1, 0.3, 0.2\n set Cells = 1, 1, 1\n";
+  const std::string tetrahedra = box + "set Element = tetrahedron\n";
+  const std::string hexahedra  = box + "set Element = hexahedron\n";
+
+  BodyParameters
+  body(const std::string &name, const std::string &mesh)
+  {
+    BodyParameters parameters = body_parameters(name, mesh);
+    parameters.rotation       = Vector3({0.3, -0.2, 1});
+    return parameters;
+  }
+
+  JointParameters
+  joint(const std::string &type,
+        const std::string &between,
+        const std::string &directions = "")
+  {
+    JointParameters parameters;
+    parameters.name       = between;
+    parameters.type       = type;
+    parameters.between    = between;
+    parameters.directions = directions;
+    if (type == "revolute")
+      parameters.axis = rotation_matrix(Vector3({0.3, -0.2, 1})) *
+                        Vector3({0, 1, 0});
+    return parameters;
+  }
+
+  const MultibodySystem &
+  hinged_and_free()
+  {
+    static const MultibodySystem system(
+      {body("hinged", hexahedra), body("free", tetrahedra)},
+      {joint("revolute", "hinged: x min, ground")},
+      LoadParameters(),
+      ".");
+    return system;
+  }
+
+  const MultibodySystem &
+  several_joints()
+  {
+    static const MultibodySystem system(
+      {body("b", tetrahedra)},
+      {joint("spherical", "b: x min, ground"),
+       joint("mean position", "b: x max, ground", "0,1,1"),
+       joint("mean rotation", "b: y max, ground", "1,0,0")},
+      LoadParameters(),
+      ".");
+    return system;
+  }
+
+  const MultibodySystem &
+  unconstrained()
+  {
+    static const MultibodySystem system({body("free", hexahedra)},
+                                        {},
+                                        LoadParameters(),
+                                        ".");
+    return system;
+  }
+
+  std::vector<Matrix3>
+  random_rotations(const MultibodySystem &system, Random &random)
+  {
+    std::vector<Matrix3> rotations;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      rotations.push_back(random.rotation());
+    return rotations;
+  }
+
+  /** Right-hand sides or solutions of all stages in one. */
+  struct Stages
+  {
+    StageVector bodies;
+    StageConstraints constraints;
+  };
+
+  /** The full linear system of the stages, as a dense matrix. */
+  class DenseStageSystem
+  {
+  public:
+    DenseStageSystem(const MultibodySystem &system,
+                     const ButcherTableau &tableau,
+                     const double step_size,
+                     const std::vector<Matrix3> &rotations)
+      : system(system)
+      , n_stages(tableau.n_stages())
+      , n_constraints(system.n_constraints())
+    {
+      for (const Body &body : system.bodies())
+        n_unknowns += body.operators().n_unknowns();
+      assemble_bodies(rotations);
+      assemble_constraints();
+
+      const Eigen::MatrixXd coupling =
+        (tableau.A * tableau.A).inverse() / (step_size * step_size);
+      matrix = Eigen::MatrixXd::Zero(size(), size());
+      for (unsigned int i = 0; i < n_stages; ++i)
+        {
+          for (unsigned int j = 0; j < n_stages; ++j)
+            matrix.block(i * n_unknowns, j * n_unknowns, n_unknowns, n_unknowns) =
+              coupling(i, j) * M;
+          matrix.block(i * n_unknowns, i * n_unknowns, n_unknowns, n_unknowns) +=
+            K;
+          matrix.block(first_row(i), i * n_unknowns, n_constraints, n_unknowns) =
+            B;
+          matrix.block(i * n_unknowns, first_row(i), n_unknowns, n_constraints) =
+            B.transpose();
+        }
+    }
+
+    /** Multipliers are larger than displacements by the size of the stiffness:
+     * scaled before the factorisation, refined after it. */
+    Eigen::VectorXd
+    solve(const Eigen::VectorXd &right_hand_side) const
+    {
+      const double scale    = K.cwiseAbs().maxCoeff();
+      Eigen::VectorXd S     = Eigen::VectorXd::Ones(size());
+      S.tail(n_stages * n_constraints).setConstant(scale);
+      const Eigen::PartialPivLU<Eigen::MatrixXd> factor(
+        S.asDiagonal() * matrix * S.asDiagonal());
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+      for (unsigned int k = 0; k < 3; ++k)
+        x += S.cwiseProduct(
+          factor.solve(S.cwiseProduct(right_hand_side - matrix * x)));
+      return x;
+    }
+
+    Eigen::VectorXd
+    vmult(const Eigen::VectorXd &x) const
+    {
+      return matrix * x;
+    }
+
+    Eigen::VectorXd
+    flatten(const Stages &stages) const
+    {
+      Eigen::VectorXd result(size());
+      unsigned int k = 0;
+      for (const SystemVector &stage : stages.bodies)
+        for (const NodalVector &vector : stage)
+          for (const double value : vector)
+            result(k++) = value;
+      for (const Eigen::VectorXd &rows : stages.constraints)
+        for (const double value : rows)
+          result(k++) = value;
+      return result;
+    }
+
+    Stages
+    unflatten(const Eigen::VectorXd &x) const
+    {
+      Stages stages;
+      unsigned int k = 0;
+      for (unsigned int i = 0; i < n_stages; ++i)
+        {
+          stages.bodies.emplace_back();
+          for (const Body &body : system.bodies())
+            {
+              NodalVector vector(body.operators().n_unknowns());
+              for (double &value : vector)
+                value = x(k++);
+              stages.bodies[i].push_back(vector);
+            }
+        }
+      for (unsigned int i = 0; i < n_stages; ++i)
+        stages.constraints.push_back(x.segment(first_row(i), n_constraints));
+      return stages;
+    }
+
+    /** Forces like the inertia of accelerations of some 10 m/s^2, and gaps. */
+    Eigen::VectorXd
+    random_right_hand_side(Random &random) const
+    {
+      Eigen::VectorXd r(size());
+      for (double &value : r)
+        value = random.number(1);
+      r.head(n_stages * n_unknowns) *= 10 * M.diagonal().maxCoeff();
+      r.tail(n_stages * n_constraints) *= 1e-4;
+      return r;
+    }
+
+    /** Largest relative error of displacements and of multipliers. */
+    double
+    error(const Eigen::VectorXd &x, const Eigen::VectorXd &exact) const
+    {
+      const unsigned int n = n_stages * n_unknowns;
+      double result = relative_difference(x.head(n), exact.head(n));
+      if (n_constraints > 0)
+        result = std::max(result,
+                          relative_difference(x.tail(size() - n),
+                                              exact.tail(size() - n)));
+      return result;
+    }
+
+  private:
+    unsigned int
+    size() const
+    {
+      return n_stages * (n_unknowns + n_constraints);
+    }
+
+    unsigned int
+    first_row(const unsigned int stage) const
+    {
+      return n_stages * n_unknowns + stage * n_constraints;
+    }
+
+    void
+    assemble_bodies(const std::vector<Matrix3> &rotations)
+    {
+      M = K = Eigen::MatrixXd::Zero(n_unknowns, n_unknowns);
+      unsigned int first = 0;
+      for (unsigned int b = 0; b < rotations.size(); ++b)
+        {
+          const BodyOperators &body = system.bodies()[b].operators();
+          const unsigned int n      = body.n_unknowns();
+          Eigen::MatrixXd R         = Eigen::MatrixXd::Zero(n, n);
+          for (unsigned int a = 0; a < body.n_nodes; ++a)
+            R.block<dim, dim>(dim * a, dim * a) =
+              Testing::to_eigen(rotations[b]);
+          M.block(first, first, n, n) = to_dense(body.mass_matrix);
+          K.block(first, first, n, n) =
+            R * to_dense(body.stiffness_matrix) * R.transpose();
+          first += n;
+        }
+    }
+
+    /** Column by column, as velocities of single unknowns. */
+    void
+    assemble_constraints()
+    {
+      SystemVector unit = system.initial_state().velocities;
+      for (NodalVector &vector : unit)
+        vector = 0;
+      B.resize(n_constraints, n_unknowns);
+      unsigned int column = 0;
+      for (NodalVector &vector : unit)
+        for (double &value : vector)
+          {
+            value           = 1;
+            B.col(column++) = system.constraint_velocity(unit);
+            value           = 0;
+          }
+    }
+
+    const MultibodySystem &system;
+    const unsigned int n_stages;
+    const unsigned int n_constraints;
+    unsigned int n_unknowns = 0;
+    Eigen::MatrixXd M, K, B, matrix;
+  };
+
+  template <typename Number>
+  using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
+
+  template <typename Number>
+  void
+  compare_factorization(const BodyOperators &body,
+                        const Number shift,
+                        const std::string &label)
+  {
+    const Matrix<Number> K =
+      shift * to_dense(body.mass_matrix).cast<Number>() +
+      to_dense(body.stiffness_matrix).cast<Number>();
+    const unsigned int n = body.n_unknowns(), n_vectors = 5;
+    Random random;
+    Matrix<Number> r(n, n_vectors);
+    for (unsigned int j = 0; j < n_vectors; ++j)
+      for (unsigned int i = 0; i < n; ++i)
+        r(i, j) = random.number(1);
+    if constexpr (std::is_same<Number, Complex>::value)
+      r += Complex(0, 0.7) * r.rowwise().reverse();
+
+    ShiftedFactorization<Number> factorization(body, shift);
+    Matrix<Number> together(r), alone(r);
+    factorization.solve(together.data(), n_vectors);
+    for (unsigned int j = n_vectors; j-- > 0;)
+      factorization.solve(alone.col(j).data());
+
+    const Matrix<Number> exact = K.partialPivLu().solve(r);
+    const double scale         = exact.cwiseAbs().maxCoeff();
+    const double error = (together - exact).cwiseAbs().maxCoeff() / scale;
+    // both solutions have relative errors of the condition number times eps
+    EXPECT_LT(error, 1e-11) << label;
+    EXPECT_LT((alone - exact).cwiseAbs().maxCoeff() / scale, 1e-11) << label;
+    report(label + ", solutions against dense factorisation", error);
+
+    const FactorizationStatistics &statistics = factorization.statistics();
+    EXPECT_LT(statistics.backward_error, 1e-13);
+    EXPECT_GE(statistics.n_entries, n);
+    EXPECT_EQ(statistics.n_bytes, statistics.n_entries * sizeof(Number));
+  }
+} // namespace
+
+TEST(ShiftedFactorization, AgainstDenseFactorization)
+{
+  for (const auto &[name, system] :
+       {std::make_pair("hexahedra", &unconstrained()),
+        std::make_pair("tetrahedra", &several_joints())})
+    {
+      const BodyOperators &body = system->bodies()[0].operators();
+      for (const double tau : {1e-4, 1e-2})
+        {
+          const std::string label =
+            std::string(name) + ", step size " + std::to_string(tau);
+          compare_factorization<double>(body,
+                                        1 / (tau * tau),
+                                        label + ", real");
+          compare_factorization<Complex>(body,
+                                         Complex(2, 4 * std::sqrt(2.)) /
+                                           (tau * tau),
+                                         label + ", complex");
+        }
+    }
+}
+
+TEST(ShiftedFactorization, UselessShifts)
+{
+  const BodyOperators &body = unconstrained().bodies()[0].operators();
+  EXPECT_THROW(ShiftedFactorization<double>(
+                 body, std::numeric_limits<double>::quiet_NaN()),
+               SimulationError);
+}
+
+TEST(JointedFactorization, ComplianceOfTheJoints)
+{
+  const Body &body          = several_joints().bodies()[0];
+  const unsigned int n      = body.operators().n_unknowns();
+  const unsigned int n_rows = dim * body.joint_functionals().size();
+  const Complex shift(3e6, 7e6);
+  Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n_rows, n);
+  for (unsigned int p = 0; p < n_rows / dim; ++p)
+    {
+      const NodalFunctional &functional = body.joint_functionals()[p];
+      for (unsigned int k = 0; k < functional.nodes.size(); ++k)
+        for (unsigned int i = 0; i < dim; ++i)
+          S(dim * p + i, dim * functional.nodes[k] + i) = functional.weights[k];
+    }
+  const Matrix<Complex> K =
+    shift * to_dense(body.operators().mass_matrix).cast<Complex>() +
+    to_dense(body.operators().stiffness_matrix).cast<Complex>();
+  const Matrix<Complex> exact =
+    S.cast<Complex>() *
+    K.partialPivLu().solve(S.transpose().cast<Complex>().eval());
+
+  Statistics statistics;
+  FactorizationCache cache(statistics);
+  const Matrix<Complex> compliance = cache.get(body, shift).compliance();
+  const double error               = (compliance - exact).cwiseAbs().maxCoeff() /
+                       exact.cwiseAbs().maxCoeff();
+  EXPECT_LT(error, 1e-11);
+  EXPECT_EQ(statistics.setup_solves, 1 + n_rows);
+  report("compliance of the joint functionals", error);
+}
+
+TEST(DiagonalizedStageSolver, AgainstTheDenseSystem)
+{
+  Random random;
+  for (const auto &[name, system] :
+       {std::make_pair("two bodies, one joint", &hinged_and_free()),
+        std::make_pair("several joints", &several_joints()),
+        std::make_pair("no joint", &unconstrained())})
+    for (unsigned int s = 1; s <= 3; ++s)
+      {
+        double error = 0;
+        for (const double tau : {1e-4, 1e-2})
+          {
+            Statistics statistics;
+            FactorizationCache cache(statistics);
+            DiagonalizedStageSolver solver(*system,
+                                           radau_iia(s),
+                                           cache,
+                                           statistics);
+            const auto rotations = random_rotations(*system, random);
+            const DenseStageSystem dense(*system, radau_iia(s), tau, rotations);
+            const Eigen::VectorXd r = dense.random_right_hand_side(random);
+            Stages stages           = dense.unflatten(r);
+            solver.prepare(tau, rotations);
+            solver.solve(stages.bodies, stages.constraints);
+            error = std::max(error,
+                             dense.error(dense.flatten(stages), dense.solve(r)));
+          }
+        // condition numbers up to 1e5 between the stiffest and softest modes
+        EXPECT_LT(error, 1e-9) << name << s;
+        report(std::string(name) + ", " + std::to_string(s) +
+                 " stages, diagonalised against dense",
+               error);
+      }
+}
+
+TEST(OneStepStageSolver, ConvergesToTheDenseSolution)
+{
+  Random random;
+  const std::vector<double> worst_rates = {0, 0.36, 0.52};
+  for (const auto &[name, system] :
+       {std::make_pair("two bodies, one joint", &hinged_and_free()),
+        std::make_pair("several joints", &several_joints())})
+    for (unsigned int s = 1; s <= 3; ++s)
+      {
+        double worst_error = 0, worst_rate = 0;
+        for (const double tau : {1e-4, 1e-3, 1e-2})
+          {
+            Statistics statistics;
+            FactorizationCache cache(statistics);
+            OneStepStageSolver solver(*system, radau_iia(s), cache, statistics);
+            const auto rotations = random_rotations(*system, random);
+            const DenseStageSystem dense(*system, radau_iia(s), tau, rotations);
+            const Eigen::VectorXd r     = dense.random_right_hand_side(random);
+            const Eigen::VectorXd exact = dense.solve(r);
+            solver.prepare(tau, rotations);
+
+            Eigen::VectorXd x = Eigen::VectorXd::Zero(r.size());
+            std::vector<double> errors;
+            const unsigned int n_iterations = (s == 1 ? 1 : 60);
+            for (unsigned int k = 0; k < n_iterations; ++k)
+              {
+                Stages stages = dense.unflatten(r - dense.vmult(x));
+                solver.solve(stages.bodies, stages.constraints);
+                x += dense.flatten(stages);
+                errors.push_back(dense.error(x, exact));
+              }
+            worst_error = std::max(worst_error, errors.back());
+            // over ten iterations: past the start, before the round-off
+            for (unsigned int k = 15; k < errors.size(); ++k)
+              if (errors[k] > 1e-9)
+                worst_rate =
+                  std::max(worst_rate,
+                           std::pow(errors[k] / errors[k - 10], 0.1));
+          }
+        EXPECT_LT(worst_error, 1e-9) << name << s;
+        EXPECT_LT(worst_rate, 1.1 * worst_rates[s - 1] + 1e-300) << name << s;
+        report(std::string(name) + ", " + std::to_string(s) +
+                 " stages, one-step matrices: error",
+               worst_error);
+        report(std::string(name) + ", " + std::to_string(s) +
+                 " stages, one-step matrices: contraction",
+               worst_rate);
+        if (s > 1)
+          {
+            EXPECT_GT(worst_rate, 0.5 * worst_rates[s - 1]);
+          }
+      }
+}
+
+TEST(FactorizationCache, FactorisesOncePerStepSize)
+{
+  Random random;
+  const MultibodySystem &system = hinged_and_free();
+  Statistics statistics;
+  FactorizationCache cache(statistics);
+  DiagonalizedStageSolver solver(system, radau_iia(3), cache, statistics);
+  const auto prepare = [&](const double tau) {
+    solver.prepare(tau, random_rotations(system, random));
+  };
+  const auto expect = [&](const unsigned int n_factorizations,
+                          const unsigned int n_schur_complements) {
+    // for each body one real and one complex matrix per step size
+    EXPECT_EQ(statistics.real_factorizations, 2 * n_factorizations);
+    EXPECT_EQ(statistics.complex_factorizations, 2 * n_factorizations);
+    EXPECT_EQ(statistics.schur_complements, 2 * n_schur_complements);
+  };
+  expect(0, 0);
+  prepare(1e-3);
+  expect(1, 1);
+  prepare(1e-3);
+  expect(1, 2);
+  prepare(5e-4);
+  expect(2, 3);
+  prepare(1e-3);
+  expect(2, 4);
+
+  // another solver shares the factors that it has in common
+  OneStepStageSolver one_step(system, radau_iia(2), cache, statistics);
+  one_step.prepare(1e-3, random_rotations(system, random));
+  EXPECT_EQ(statistics.real_factorizations, 4 + 4);
+  OneStepStageSolver same(system, radau_iia(2), cache, statistics);
+  same.prepare(1e-3, random_rotations(system, random));
+  EXPECT_EQ(statistics.real_factorizations, 8);
+  EXPECT_GT(statistics.joint_column_bytes, 0);
+}
+
+TEST(FactorizationCache, NoJointsNoSchurComplement)
+{
+  Random random;
+  const MultibodySystem &system = unconstrained();
+  Statistics statistics;
+  FactorizationCache cache(statistics);
+  DiagonalizedStageSolver solver(system, radau_iia(2), cache, statistics);
+  const auto rotations = random_rotations(system, random);
+  solver.prepare(1e-3, rotations);
+  const DenseStageSystem dense(system, radau_iia(2), 1e-3, rotations);
+  Stages stages = dense.unflatten(dense.random_right_hand_side(random));
+  solver.solve(stages.bodies, stages.constraints);
+  EXPECT_EQ(statistics.schur_complements, 0);
+  EXPECT_EQ(statistics.joint_column_bytes, 0);
+  EXPECT_EQ(statistics.complex_factorizations, 1);
+  EXPECT_EQ(statistics.complex_solves, 1);
+  EXPECT_EQ(statistics.real_solves, 0);
+  EXPECT_EQ(statistics.setup_solves, 1); // the check of the factorisation
+}
