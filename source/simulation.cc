@@ -249,7 +249,7 @@ namespace ACF
                           model.time.end_time);
         run_time_loop(*system, model.time, pointers, progress, statistics);
       }
-    catch (const SimulationError &)
+    catch (...)
       {
         write_statistics(false);
         throw;

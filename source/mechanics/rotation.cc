@@ -9,6 +9,19 @@
 
 namespace ACF
 {
+  namespace
+  {
+    // The determinant of a matrix that is not finite may be infinite.
+    bool
+    preserves_orientation(const Matrix3 &F)
+    {
+      const double det = determinant(F);
+      return det > 0 && std::isfinite(det);
+    }
+  } // namespace
+
+
+
   Matrix3
   BodyRotation::contract(const Vector3 &c) const
   {
@@ -38,7 +51,7 @@ namespace ACF
   std::optional<BodyRotation>
   polar_rotation(const Matrix3 &deformation_gradient)
   {
-    if (!(determinant(deformation_gradient) > 0))
+    if (!preserves_orientation(deformation_gradient))
       return {};
 
     Eigen::Matrix3d F;
@@ -76,7 +89,7 @@ namespace ACF
   std::optional<BodyRotation>
   three_point_rotation(const Matrix3 &F)
   {
-    if (!(determinant(F) > 0))
+    if (!preserves_orientation(F))
       return {};
 
     Vector3 a, b;

@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <sstream>
 
 namespace ACF
 {
@@ -246,18 +248,25 @@ namespace ACF
                 product += entry * solution[dim * graph.column[e] + j];
                 row_sum += std::abs(entry);
               }
-          defect = std::max(defect, std::abs(product - right_hand_side[k]));
-          matrix_norm = std::max(matrix_norm, row_sum);
-          y_norm      = std::max(y_norm, std::abs(solution[k]));
-          r_norm      = std::max(r_norm, std::abs(right_hand_side[k]));
+          // std::max alone ignores not-a-number
+          const double row_defect = std::abs(product - right_hand_side[k]);
+          defect                  = std::isfinite(row_defect)
+                                      ? std::max(defect, row_defect)
+                                      : std::numeric_limits<double>::infinity();
+          matrix_norm             = std::max(matrix_norm, row_sum);
+          y_norm                  = std::max(y_norm, std::abs(solution[k]));
+          r_norm = std::max(r_norm, std::abs(right_hand_side[k]));
         }
 
     factor_statistics.backward_error = defect / (matrix_norm * y_norm + r_norm);
     if (!(factor_statistics.backward_error < 1e-10))
-      throw SimulationError(
-        "The factorisation of a body with " + std::to_string(n_unknowns) +
-        " unknowns is inaccurate: a test solve has the backward error " +
-        std::to_string(factor_statistics.backward_error) + ".");
+      {
+        std::ostringstream text;
+        text << "The factorisation of a body with " << n_unknowns
+             << " unknowns is inaccurate: a test solve has the backward error "
+             << factor_statistics.backward_error << ".";
+        throw SimulationError(text.str());
+      }
   }
 
 

@@ -246,8 +246,9 @@ namespace ACF
           const double relative          = stage[b].l2_norm() /
                                   std::sqrt(1. * operators.n_nodes) /
                                   operators.length;
-          if (!(relative <= norm)) // also if it is not a number
-            norm = relative;
+          if (!std::isfinite(relative))
+            return relative;
+          norm = std::max(norm, relative);
         }
     return norm;
   }
@@ -260,6 +261,10 @@ namespace ACF
     tried_step_size = step_size;
     predict(state, step_size);
     stage_solver->prepare(step_size, predicted_rotations(state));
+
+    // The one-step matrices belong to a non-normal iteration, whose increments
+    // may grow at first.
+    const unsigned int patience = parameters.one_step_matrices ? 6 : 0;
 
     StepReport report;
     StageVector increment(stages);
@@ -298,18 +303,21 @@ namespace ACF
               (report.iterations == 2 ? ratio
                                       : std::sqrt(ratio * previous_ratio));
             previous_ratio = ratio;
-            if (report.contraction >= 0.99)
+            if (report.contraction >= 0.99 && report.iterations > patience)
               {
                 report.failure = "the iteration diverges";
                 return report;
               }
-            factor = report.contraction / (1 - report.contraction);
+            factor = report.contraction < 1
+                       ? report.contraction / (1 - report.contraction)
+                       : std::numeric_limits<double>::infinity();
 
             const double predicted =
               factor * norm *
               std::pow(report.contraction,
                        parameters.max_newton_iterations - report.iterations);
-            if (predicted > parameters.newton_tolerance)
+            if (predicted > parameters.newton_tolerance &&
+                report.iterations > patience)
               {
                 report.failure = "the iteration contracts too slowly";
                 return report;

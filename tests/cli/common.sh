@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 The acf-dealii authors
 #
+# shellcheck shell=bash disable=SC2034
+#
 # What the scripts of this folder share. Usage of each: SCRIPT EXECUTABLE TOP.
 # Every failed check is reported; the exit status of the script says whether
 # there were any. The scripts work in a temporary folder.

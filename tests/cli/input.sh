@@ -58,6 +58,12 @@ while read -r model; do
   expect_status 0 --validate --quiet "$model"
   check "--validate --quiet writes something for $model" [ ! -s stdout ]
 done < <(find "$top/prm" -name '*.prm' | sort)
+
+# The example in the README, the indented block that begins with a title.
+awk '/^    set Title/ { inside = 1 }
+     inside && /^[^ ]/ { exit }
+     inside { print substr($0, 5) }' "$top/README.md" >readme.prm
+expect_status 0 --validate --quiet readme.prm
 check '--validate writes no files' [ -z "$(find . -name '*-results')" ]
 
 # --- errors in a model file ---

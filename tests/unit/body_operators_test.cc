@@ -73,7 +73,9 @@ namespace
       all.emplace_back("box of tetrahedra", tetrahedra, true);
       all.emplace_back("cylinder of hexahedra", cylinder(hexahedron, 3), false);
       all.emplace_back("cylinder of tetrahedra", short_cylinder, true);
-      all.emplace_back("distorted hexahedra", distorted(hexahedra, 0.05), false);
+      all.emplace_back("distorted hexahedra",
+                       distorted(hexahedra, 0.05),
+                       false);
       all.emplace_back("distorted tetrahedra",
                        distorted(tetrahedra, 0.03),
                        true);
@@ -107,8 +109,8 @@ namespace
     const FEValuesExtractors::Vector u(0);
     const unsigned int n = values.dofs_per_cell;
     std::vector<types::global_dof_index> dofs(n);
-    Eigen::MatrixXd K = Eigen::MatrixXd::Zero(dim * body.n_nodes(),
-                                              dim * body.n_nodes());
+    Eigen::MatrixXd K =
+      Eigen::MatrixXd::Zero(dim * body.n_nodes(), dim * body.n_nodes());
     for (const auto &cell : body.dof_handler().active_cell_iterators())
       {
         values.reinit(cell);
@@ -137,11 +139,8 @@ namespace
     SparseMatrix<double> mass(sparsity);
     const Functions::ConstantFunction<dim> density(test_material().density,
                                                    dim);
-    MatrixCreator::create_mass_matrix(body.mesh().mapping(),
-                                      body.dof_handler(),
-                                      quadrature,
-                                      mass,
-                                      &density);
+    MatrixCreator::create_mass_matrix(
+      body.mesh().mapping(), body.dof_handler(), quadrature, mass, &density);
     Eigen::MatrixXd result = Eigen::MatrixXd::Zero(mass.m(), mass.n());
     for (const auto &entry : mass)
       result(entry.row(), entry.column()) = entry.value();
@@ -152,9 +151,8 @@ namespace
   Quadrature<dim>
   fine_quadrature(const BodyMesh &mesh)
   {
-    return mesh.is_simplex() ?
-             Quadrature<dim>(QWitherdenVincentSimplex<dim>(4)) :
-             Quadrature<dim>(QGauss<dim>(5));
+    return mesh.is_simplex() ? Quadrature<dim>(QWitherdenVincentSimplex<dim>(4))
+                             : Quadrature<dim>(QGauss<dim>(5));
   }
 
   NodalVector
@@ -168,10 +166,10 @@ TEST(BodyOperators, MassAndStiffnessAgainstReassembly)
 {
   for (const Example &example : examples())
     {
-      const BodyOperators &body      = example.operators;
+      const BodyOperators &body       = example.operators;
       const Eigen::MatrixXd mass      = to_dense(body.mass_matrix);
       const Eigen::MatrixXd stiffness = to_dense(body.stiffness_matrix);
-      const Quadrature<dim> fine = fine_quadrature(example.body.mesh());
+      const Quadrature<dim> fine      = fine_quadrature(example.body.mesh());
 
       EXPECT_LT(relative_difference(mass, mass.transpose()), 1e-14);
       EXPECT_LT(relative_difference(stiffness, stiffness.transpose()), 1e-13);
@@ -262,7 +260,7 @@ TEST(BodyOperators, StiffnessOfAffineFields)
       double rigid = 0, energy_error = 0;
       for (unsigned int n = 0; n < 10; ++n)
         {
-          const Matrix3 spin = cross_product_matrix(random.vector(1));
+          const Matrix3 spin  = cross_product_matrix(random.vector(1));
           const NodalVector u = affine(X, spin, random.vector(1));
           body.stiffness_matrix.vmult(force, u);
           rigid = std::max(rigid,
@@ -272,8 +270,8 @@ TEST(BodyOperators, StiffnessOfAffineFields)
           const NodalVector u2 = affine(X, G, random.vector(1));
           body.stiffness_matrix.vmult(force, u2);
           const SymmetricTensor<2, dim> strain = symmetrize(G);
-          const double energy = body.volume / 2 * strain *
-                                (elasticity(material) * strain);
+          const double energy =
+            body.volume / 2 * strain * (elasticity(material) * strain);
           energy_error =
             std::max(energy_error, std::abs(u2 * force / 2 / energy - 1));
         }
@@ -295,11 +293,10 @@ TEST(BodyOperators, AveragingVectors)
         {
           const Vector3 g = node_value(body.averaging_vectors, a);
           sum += g;
-          gradient +=
-            outer_product(node_value(body.reference_positions, a), g);
+          gradient += outer_product(node_value(body.reference_positions, a), g);
         }
       EXPECT_LT(sum.norm() * body.length, 1e-12) << example.name;
-      EXPECT_LT((gradient - identity()).norm(), 1e-12) << example.name;
+      EXPECT_LT((gradient - identity_matrix()).norm(), 1e-12) << example.name;
 
       // Gauss: V g_a = int phi_a n dA over the boundary
       NodalVector boundary(body.n_unknowns());
@@ -356,13 +353,13 @@ TEST(BodyOperators, NumberingOfUnknowns)
                       body.finite_element().system_to_component_index(i).first);
         }
       for (unsigned int k = 0; k < points.size(); ++k)
-        ASSERT_LT(points[k].distance(
-                    Point<dim>(node_value(body.reference_positions(), k / dim))),
+        ASSERT_LT(points[k].distance(Point<dim>(
+                    node_value(body.reference_positions(), k / dim))),
                   1e-14);
 
       // a field of deal.II with these unknowns is the function it comes from
-      const Matrix3 F = random.matrix(1);
-      const Vector3 t = random.vector(1);
+      const Matrix3 F     = random.matrix(1);
+      const Vector3 t     = random.vector(1);
       const NodalVector x = affine(body.reference_positions(), F, t);
       FEValues<dim> values(body.mesh().mapping(),
                            body.finite_element(),
@@ -394,26 +391,15 @@ TEST(BodyOperators, RigidBodyOfBoxes)
   for (const Example &example : examples())
     {
       const BodyOperators &body = example.operators;
-      // int rho phi_a: with another rule, and summing up to the mass
-      Vector<double> masses(body.n_unknowns());
-      FEValues<dim> values(example.body.mesh().mapping(),
-                           example.body.finite_element(),
-                           fine_quadrature(example.body.mesh()),
-                           update_values | update_JxW_values);
-      std::vector<types::global_dof_index> dofs(values.dofs_per_cell);
-      for (const auto &cell :
-           example.body.dof_handler().active_cell_iterators())
-        {
-          values.reinit(cell);
-          cell->get_dof_indices(dofs);
-          for (unsigned int i = 0; i < dofs.size(); ++i)
-            for (const unsigned int q : values.quadrature_point_indices())
-              masses[dofs[i]] += test_material().density *
-                                 values.shape_value(i, q) * values.JxW(q);
-        }
+      const Eigen::VectorXd masses =
+        reassemble_mass(example.body, fine_quadrature(example.body.mesh()))
+          .rowwise()
+          .sum();
       for (unsigned int k = 0; k < body.n_unknowns(); ++k)
-        ASSERT_NEAR(masses[k], body.nodal_masses[k / dim], 1e-14 * body.mass);
-      EXPECT_NEAR(body.mass, test_material().density * body.volume, 1e-12 * body.mass);
+        ASSERT_NEAR(masses(k), body.nodal_masses[k / dim], 1e-14 * body.mass);
+      EXPECT_NEAR(body.mass,
+                  test_material().density * body.volume,
+                  1e-12 * body.mass);
 
       if (example.name.substr(0, 3) != "box")
         continue;
@@ -455,7 +441,7 @@ TEST(BodyOperators, RigidBodyOfCylindersConverges)
           const double along = mass * radius * radius / 2;
           const double across =
             mass / 12 * (3 * radius * radius + length * length);
-          const Matrix3 inertia = across * identity() +
+          const Matrix3 inertia = across * identity_matrix() +
                                   (along - across) * outer_product(axis, axis);
           EXPECT_LT((body.centre - centre).norm(), 1e-13);
           EXPECT_LT(body.volume, exact); // inscribed

@@ -76,7 +76,7 @@ namespace ACF::Testing
   };
 
   inline Matrix3
-  identity()
+  identity_matrix()
   {
     return Matrix3(unit_symmetric_tensor<dim>());
   }

@@ -43,14 +43,18 @@ namespace
     static const std::list<Example> list = []() {
       const Point<dim> from(0.2, -0.1, 0.4), to(1, 0.2, 0.6);
       std::list<Example> all;
-      all.emplace_back(
-        "hexahedra",
-        distorted(generate_box(from, to, {{3, 2, 1}}, ReferenceCells::Hexahedron),
-                  0.02));
-      all.emplace_back(
-        "tetrahedra",
-        distorted(generate_box(from, to, {{2, 1, 1}}, ReferenceCells::Tetrahedron),
-                  0.02));
+      all.emplace_back("hexahedra",
+                       distorted(generate_box(from,
+                                              to,
+                                              {{3, 2, 1}},
+                                              ReferenceCells::Hexahedron),
+                                 0.02));
+      all.emplace_back("tetrahedra",
+                       distorted(generate_box(from,
+                                              to,
+                                              {{2, 1, 1}},
+                                              ReferenceCells::Tetrahedron),
+                                 0.02));
       return all;
     }();
     return list;
@@ -65,16 +69,14 @@ namespace
   deformed(const Example &example, Random &random)
   {
     const Matrix3 Q       = random.rotation();
-    const Matrix3 stretch = identity() + random.matrix(0.1);
-    const Vector3 bend = random.vector(0.3), t = random.vector(3);
-    NodalVector x = transformed(example.body.reference_positions,
-                                [&](const Vector3 &X) {
-                                  const Vector3 Y =
-                                    rotation_matrix(Vector3(
-                                      {0.4 * X[0], 0, 0.2 * X[1]})) *
-                                    (stretch * X);
-                                  return t + Q * (Y + X[0] * X[0] * bend);
-                                });
+    const Matrix3 stretch = identity_matrix() + random.matrix(0.1);
+    const Vector3 bend = random.vector(0.15), t = random.vector(3);
+    NodalVector x =
+      transformed(example.body.reference_positions, [&](const Vector3 &X) {
+        const Vector3 Y =
+          rotation_matrix(Vector3({0.4 * X[0], 0, 0.2 * X[1]})) * (stretch * X);
+        return t + Q * (Y + X[0] * X[0] * bend);
+      });
     x += random.nodal_vector(x.size(), 2e-3);
     return x;
   }
@@ -154,7 +156,7 @@ namespace
         for (const unsigned int q : values.quadrature_point_indices())
           {
             const SymmetricTensor<2, dim> strain =
-              symmetrize(transpose(R) * gradients[q] - identity());
+              symmetrize(transpose(R) * gradients[q] - identity_matrix());
             energy += (material.lambda() / 2 * std::pow(trace(strain), 2) +
                        material.mu() * strain * strain) *
                       values.JxW(q);
@@ -189,12 +191,12 @@ TEST(ReducedStrain, MeansAndCoRotatedDisplacement)
     for (unsigned int n = 0; n < 5; ++n)
       {
         const BodyOperators &body = example.body;
-        const Matrix3 R = random.rotation(), F = R * (identity() + random.matrix(0.3));
-        const Vector3 t     = random.vector(2);
-        const NodalVector x = transformed(body.reference_positions,
-                                          [&](const Vector3 &X) {
-                                            return t + F * X;
-                                          });
+        const Matrix3 R           = random.rotation(),
+                      F = R * (identity_matrix() + random.matrix(0.3));
+        const Vector3 t = random.vector(2);
+        const NodalVector x =
+          transformed(body.reference_positions,
+                      [&](const Vector3 &X) { return t + F * X; });
         EXPECT_LT((mean_deformation_gradient(body, x) - F).norm(), 1e-12);
         EXPECT_LT((mass_mean(body, x) - t - F * body.centre).norm(), 1e-13);
 
@@ -204,8 +206,9 @@ TEST(ReducedStrain, MeansAndCoRotatedDisplacement)
           {
             const Vector3 arm =
               node_value(body.reference_positions, a) - body.centre;
-            EXPECT_LT((node_value(q, a) - transpose(R) * (F * arm) + arm).norm(),
-                      1e-13);
+            EXPECT_LT(
+              (node_value(q, a) - transpose(R) * (F * arm) + arm).norm(),
+              1e-13);
           }
       }
 }
@@ -287,20 +290,19 @@ TEST(ReducedStrain, RigidMotionsAreFree)
     for (const auto &measure : measures)
       for (unsigned int n = 0; n < 20; ++n)
         {
-          const Matrix3 Q     = random.rotation();
-          const Vector3 t     = random.vector(10);
-          const NodalVector x = transformed(example.body.reference_positions,
-                                            [&](const Vector3 &X) {
-                                              return t + Q * X;
-                                            });
-          const Force force   = force_of(example, measure.first, x);
+          const Matrix3 Q = random.rotation();
+          const Vector3 t = random.vector(10);
+          const NodalVector x =
+            transformed(example.body.reference_positions,
+                        [&](const Vector3 &X) { return t + Q * X; });
+          const Force force = force_of(example, measure.first, x);
           largest_force =
             std::max(largest_force,
                      force.value.linfty_norm() / example.force_scale());
           largest_energy =
             std::max(largest_energy,
-                     std::abs(*force.energy) / (test_material().youngs_modulus *
-                                                example.body.volume));
+                     std::abs(*force.energy) /
+                       (test_material().youngs_modulus * example.body.volume));
         }
   // round-off of positions ten lengths away, and some ten nodes per length
   EXPECT_LT(largest_force, 1e-12);

@@ -24,7 +24,7 @@ namespace
   {
     Matrix3 F;
     do
-      F = identity() + random.matrix(0.3);
+      F = identity_matrix() + random.matrix(0.3);
     while (determinant(F) < 0.3);
     return random.rotation() * F;
   }
@@ -60,12 +60,12 @@ namespace
                       const Matrix3 &direction,
                       const RotationMeasure measure)
   {
-    const double h       = 1e-5;
-    const Matrix3 change = (body_rotation(F + h * direction, measure)->rotation -
-                            body_rotation(F - h * direction, measure)->rotation) /
-                           (2 * h);
-    const Matrix3 W =
-      transpose(body_rotation(F, measure)->rotation) * change;
+    const double h = 1e-5;
+    const Matrix3 change =
+      (body_rotation(F + h * direction, measure)->rotation -
+       body_rotation(F - h * direction, measure)->rotation) /
+      (2 * h);
+    const Matrix3 W = transpose(body_rotation(F, measure)->rotation) * change;
     EXPECT_LT((W + transpose(W)).norm(), 1e-9 * (1 + W.norm()));
     return axial(0.5 * (W - transpose(W)));
   }
@@ -110,7 +110,7 @@ TEST(RotationMatrix, IsRodriguesFormulaAndTheExponentialSeries)
   EXPECT_LT(error, 5e-15);
   report("rotation matrix against Rodrigues' formula", error);
 
-  EXPECT_EQ((rotation_matrix(Vector3()) - identity()).norm(), 0);
+  EXPECT_EQ((rotation_matrix(Vector3()) - identity_matrix()).norm(), 0);
   const Matrix3 quarter = rotation_matrix(Vector3({0, 0, numbers::PI / 2}));
   EXPECT_NEAR(quarter[1][0], 1, 1e-15); // x to y, not to -y
   EXPECT_NEAR(quarter[0][1], -1, 1e-15);
@@ -135,8 +135,7 @@ TEST(Rotation, PolarDecomposition)
       const Matrix3 F = random_gradient(random);
       const Matrix3 R = polar_rotation(F)->rotation;
       const Matrix3 U = transpose(R) * F;
-      defect =
-        std::max(defect, (transpose(R) * R - identity()).norm());
+      defect = std::max(defect, (transpose(R) * R - identity_matrix()).norm());
       defect = std::max(defect, std::abs(determinant(R) - 1));
       defect = std::max(defect, (U - transpose(U)).norm());
       for (const double value : eigenvalues(symmetrize(U)))
@@ -157,14 +156,12 @@ TEST(Rotation, ThreePointFrame)
     {
       const Matrix3 F = random_gradient(random);
       const Matrix3 R = three_point_rotation(F)->rotation;
-      defect = std::max(defect, (transpose(R) * R - identity()).norm());
+      defect = std::max(defect, (transpose(R) * R - identity_matrix()).norm());
       defect = std::max(defect, std::abs(determinant(R) - 1));
       // R^T F is upper triangular in its first two columns, both positive
       const Matrix3 U = transpose(R) * F;
-      defect          = std::max({defect,
-                         std::abs(U[1][0]),
-                         std::abs(U[2][0]),
-                         std::abs(U[2][1])});
+      defect          = std::max(
+        {defect, std::abs(U[1][0]), std::abs(U[2][0]), std::abs(U[2][1])});
       EXPECT_GT(U[0][0], 0);
       EXPECT_GT(U[1][1], 0);
     }
@@ -182,18 +179,18 @@ TEST(Rotation, ObjectivityAndRigidRotations)
         const Matrix3 F = random_gradient(random), Q = random.rotation();
         const BodyRotation plain   = *body_rotation(F, measure);
         const BodyRotation rotated = *body_rotation(Q * F, measure);
-        difference                 = std::max(difference,
-                              (rotated.rotation - Q * plain.rotation).norm());
+        difference =
+          std::max(difference, (rotated.rotation - Q * plain.rotation).norm());
         // in the rotated frame the derivative does not see Q
         difference =
           std::max(difference,
                    (rotated.spin_gradient - plain.spin_gradient).norm());
-        rigid = std::max(rigid, (body_rotation(Q, measure)->rotation - Q).norm());
+        rigid =
+          std::max(rigid, (body_rotation(Q, measure)->rotation - Q).norm());
         if (measure == RotationMeasure::polar)
-          isotropy = std::max(isotropy,
-                              (polar_rotation(F * Q)->rotation -
-                               plain.rotation * Q)
-                                .norm());
+          isotropy = std::max(
+            isotropy,
+            (polar_rotation(F * Q)->rotation - plain.rotation * Q).norm());
       }
   EXPECT_LT(difference, 1e-13);
   EXPECT_LT(isotropy, 1e-13);
@@ -216,10 +213,10 @@ TEST(Rotation, DerivativeAgainstCentralDifferences)
             for (unsigned int k = 0; k < dim; ++k)
               {
                 Matrix3 direction;
-                direction[j][k]    = 1;
-                const Vector3 spin = apply(result.spin_gradient,
-                                           transpose(result.rotation) *
-                                             direction);
+                direction[j][k] = 1;
+                const Vector3 spin =
+                  apply(result.spin_gradient,
+                        transpose(result.rotation) * direction);
                 error = std::max(
                   error,
                   (spin - spin_by_differences(F, direction, measure)).norm() /
@@ -253,10 +250,10 @@ TEST(Rotation, Contraction)
       // P = [L c]x, the form of the polar decomposition
       const BodyRotation result = *polar_rotation(F);
       const Matrix3 U           = transpose(result.rotation) * F;
-      const Matrix3 L           = invert(trace(U) * identity() - U);
-      difference                = std::max(difference,
-                            (result.contract(c) - cross_product_matrix(L * c))
-                              .norm());
+      const Matrix3 L           = invert(trace(U) * identity_matrix() - U);
+      difference =
+        std::max(difference,
+                 (result.contract(c) - cross_product_matrix(L * c)).norm());
     }
   EXPECT_LT(difference, 1e-13);
   report("contraction against [L c]x", difference);
@@ -272,12 +269,12 @@ TEST(Rotation, NothingWithoutProperRotation)
       EXPECT_FALSE(body_rotation(Matrix3(), measure));
       for (unsigned int i = 0; i < dim; ++i)
         {
-          Matrix3 reflection = identity();
+          Matrix3 reflection = identity_matrix();
           reflection[i][i]   = -1;
           EXPECT_FALSE(body_rotation(reflection, measure));
           EXPECT_FALSE(body_rotation(random.rotation() * reflection, measure));
 
-          Matrix3 flat = identity();
+          Matrix3 flat = identity_matrix();
           flat[i][i]   = 0;
           EXPECT_FALSE(body_rotation(flat, measure));
           for (unsigned int j = 0; j < dim; ++j)

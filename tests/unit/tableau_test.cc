@@ -57,7 +57,7 @@ namespace
   double
   contraction(const ButcherTableau &tableau, const double z)
   {
-    const unsigned int s = tableau.n_stages();
+    const unsigned int s                       = tableau.n_stages();
     const StageTriangularization approximation = triangularize_stages(tableau);
     const Eigen::MatrixXd exact = identity(s) + z * tableau.A * tableau.A;
     const Eigen::MatrixXd approximate =
@@ -112,10 +112,10 @@ TEST(RadauIIA, OrderConditions)
           const double R =
             1 + z * b.dot((identity(s) - z * A).inverse() * ones);
           const double pade =
-            s == 1 ? 1 / (1 - z) :
-            s == 2 ? (1 + z / 3) / (1 - 2 * z / 3 + z * z / 6) :
-                     (1 + 2 * z / 5 + z * z / 20) /
-                       (1 - 3 * z / 5 + 3 * z * z / 20 - z * z * z / 60);
+            s == 1   ? 1 / (1 - z)
+            : s == 2 ? (1 + z / 3) / (1 - 2 * z / 3 + z * z / 6)
+                     : (1 + 2 * z / 5 + z * z / 20) /
+                         (1 - 3 * z / 5 + 3 * z * z / 20 - z * z * z / 60);
           EXPECT_NEAR(R, pade, 1e-13) << s << " " << z;
         }
     }
@@ -214,10 +214,8 @@ TEST(StageTriangularization, FactorsAndShifts)
 
 TEST(StageTriangularization, WorstContraction)
 {
-  for (const auto &[s, expected] :
-       std::vector<std::pair<unsigned int, double>>{{1, 0},
-                                                    {2, 0.36},
-                                                    {3, 0.52}})
+  for (const auto &[s, expected] : std::vector<std::pair<unsigned int, double>>{
+         {1, 0}, {2, 0.36}, {3, 0.52}})
     {
       double worst = 0, worst_z = 0;
       for (double exponent = -6; exponent <= 10; exponent += 0.002)

@@ -10,8 +10,6 @@
 
 namespace ACF
 {
-  class ParameterFile;
-
   /** What a model file says of a joint. */
   struct JointParameters
   {

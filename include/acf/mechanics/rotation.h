@@ -49,8 +49,8 @@ namespace ACF
    * Rotation R of the polar decomposition $F = R U$. Its derivative is
    * $\delta\omega = (\mathrm{tr}(U) I - U)^{-1} \mathrm{axial}(H - H^T)$.
    *
-   * @return nothing if $\det F \le 0$ (or not a number), where no proper
-   * rotation exists
+   * @return nothing if $\det F \le 0$ (or not finite), where no proper rotation
+   * exists
    */
   std::optional<BodyRotation>
   polar_rotation(const Matrix3 &deformation_gradient);
@@ -62,7 +62,7 @@ namespace ACF
    * $a = F e_1$, $b = F e_2$: $R = (a/|a|,\ n \times a/|a|,\ n)$,
    * $n = a \times b / |a \times b|$.
    *
-   * @return nothing if $\det F \le 0$ (or not a number)
+   * @return nothing if $\det F \le 0$ (or not finite)
    */
   std::optional<BodyRotation>
   three_point_rotation(const Matrix3 &deformation_gradient);

@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+// Cost of a step of the pendulum (prm/pendulum) against the number of unknowns,
+// as comma-separated values: memory and entries of the factor, times of
+// assembly, factorisation and step, the share of the solves with the cached
+// factor, and the ratio of the paper's real one-step matrices to the
+// diagonalised ones, measured in the same run. Times are medians of three runs.
+//
+// Usage: step_cost [--quick]
+
+#include <mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+
+#include "recorded_run.h"
+
+namespace
+{
+  using namespace Tests;
+
+  std::string
+  model_file(const std::array<unsigned int, 3> &cells)
+  {
+    std::ostringstream text;
+    text << R"(
+subsection Bodies
+  set Names = pendulum
+  subsection pendulum
+    set Mesh            = box
+    set Element         = tetrahedron
+    set Box from        = -0.00125, 0, -0.025
+    set Box to          =  0.00125, 1,  0.025
+    set Cells           = )"
+         << cells[0] << ", " << cells[1] << ", " << cells[2] << R"(
+    set Young's modulus = 2.1e8
+    set Poisson's ratio = 0.3
+    set Density         = 7800
+  end
+end
+subsection Joints
+  set Names = hinge
+  subsection hinge
+    set Type    = revolute
+    set Between = pendulum: y min, ground
+    set Axis    = 1, 0, 0
+  end
+end
+subsection Loads
+  set Gravity = 0, 0, -9.81
+end
+subsection Time integration
+  set Step size = 1e-3
+end
+)";
+    return text.str();
+  }
+
+  struct Cost
+  {
+    Statistics statistics;
+    double assembly = 0; // s
+    double step     = 0; // s, without factorisation
+    double solves   = 0; // s per step
+  };
+
+  Cost
+  measure(const std::array<unsigned int, 3> &cells,
+          const unsigned int n_steps,
+          const bool one_step_matrices)
+  {
+    std::vector<Cost> costs(3);
+    for (Cost &cost : costs)
+      {
+        const auto start = std::chrono::steady_clock::now();
+        RecordedRun run(model_file(cells),
+                        1.,
+                        {"Time integration/End time=" +
+                           std::to_string(1e-3 * n_steps),
+                         std::string("Time integration/Stage matrices=") +
+                           (one_step_matrices ? "one-step" : "diagonalized")});
+        cost.assembly = std::chrono::duration<double>(
+                          std::chrono::steady_clock::now() - start)
+                          .count();
+        run.run();
+        cost.statistics = run.statistics;
+        auto &times     = cost.statistics.wall_times;
+        cost.step   = (times["time steps"] - times["factorisation"]) / n_steps;
+        cost.solves = times["solves"] / n_steps;
+      }
+    std::sort(costs.begin(), costs.end(), [](const Cost &a, const Cost &b) {
+      return a.step < b.step;
+    });
+    return costs[1];
+  }
+} // namespace
+
+
+
+int
+main(int argc, char **argv)
+{
+  const bool quick = (argc > 1 && std::string(argv[1]) == "--quick");
+  int provided;
+  MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
+
+  std::vector<std::array<unsigned int, 3>> meshes = {{{1, 8, 1}}};
+  if (!quick)
+    meshes = {{{1, 20, 1}}, {{1, 40, 2}}, {{1, 80, 4}}, {{1, 112, 5}}};
+  const unsigned int n_steps = quick ? 3 : 20;
+
+  std::cout << "unknowns,factor entries,factor memory [B],assembly [s],"
+               "factorisation [s],step [s],iterations per step,share of solves,"
+               "one-step: step relative to diagonalized,"
+               "one-step: iterations per step,peak memory [B]"
+            << std::endl;
+  for (const auto &cells : meshes)
+    {
+      const Cost cost       = measure(cells, n_steps, false);
+      const Cost paper      = measure(cells, n_steps, true);
+      const auto iterations = [&](const Cost &c) {
+        return 1. * c.statistics.newton_iterations / c.statistics.steps;
+      };
+      const RecordedRun size(model_file(cells),
+                             1.,
+                             {"Time integration/End time=1"});
+      std::cout << size.system.bodies()[0].operators().n_unknowns() << ','
+                << cost.statistics.factor_entries << ','
+                << cost.statistics.factor_bytes << ',' << cost.assembly << ','
+                << cost.statistics.wall_times.at("factorisation") << ','
+                << cost.step << ',' << iterations(cost) << ','
+                << cost.solves / cost.step << ',' << paper.step / cost.step
+                << ',' << iterations(paper) << ',' << peak_memory()
+                << std::endl;
+    }
+  MPI_Finalize();
+  return 0;
+}

@@ -1,0 +1,211 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_tests_dense_stage_system_h
+#define acf_tests_dense_stage_system_h
+
+#include <acf/solvers/stage_solver.h>
+
+#include <unit/mechanics_test.h>
+
+namespace ACF::Testing
+{
+  /** Right-hand sides or solutions of all stages in one. */
+  struct Stages
+  {
+    StageVector bodies;
+    StageConstraints constraints;
+  };
+
+  /** The full linear system of the stages, as a dense matrix. */
+  class DenseStageSystem
+  {
+  public:
+    DenseStageSystem(const MultibodySystem &system,
+                     const ButcherTableau &tableau,
+                     const double step_size,
+                     const std::vector<Matrix3> &rotations)
+      : system(system)
+      , n_stages(tableau.n_stages())
+      , n_constraints(system.n_constraints())
+    {
+      for (const Body &body : system.bodies())
+        n_unknowns += body.operators().n_unknowns();
+      assemble_bodies(rotations);
+      assemble_constraints();
+
+      const Eigen::MatrixXd coupling =
+        (tableau.A * tableau.A).inverse() / (step_size * step_size);
+      matrix = Eigen::MatrixXd::Zero(size(), size());
+      for (unsigned int i = 0; i < n_stages; ++i)
+        {
+          for (unsigned int j = 0; j < n_stages; ++j)
+            matrix.block(i * n_unknowns,
+                         j * n_unknowns,
+                         n_unknowns,
+                         n_unknowns) = coupling(i, j) * M;
+          matrix.block(i * n_unknowns,
+                       i * n_unknowns,
+                       n_unknowns,
+                       n_unknowns) += K;
+          matrix.block(first_row(i),
+                       i * n_unknowns,
+                       n_constraints,
+                       n_unknowns)    = B;
+          matrix.block(i * n_unknowns,
+                       first_row(i),
+                       n_unknowns,
+                       n_constraints) = B.transpose();
+        }
+    }
+
+    /** Multipliers are larger than displacements by the size of the stiffness:
+     * scaled before the factorisation, refined after it. */
+    Eigen::VectorXd
+    solve(const Eigen::VectorXd &right_hand_side) const
+    {
+      const double scale = K.cwiseAbs().maxCoeff();
+      Eigen::VectorXd S  = Eigen::VectorXd::Ones(size());
+      S.tail(n_stages * n_constraints).setConstant(scale);
+      const Eigen::PartialPivLU<Eigen::MatrixXd> factor(
+        S.asDiagonal() * matrix * S.asDiagonal());
+      Eigen::VectorXd x = Eigen::VectorXd::Zero(size());
+      for (unsigned int k = 0; k < 3; ++k)
+        x += S.cwiseProduct(
+          factor.solve(S.cwiseProduct(right_hand_side - matrix * x)));
+      return x;
+    }
+
+    Eigen::VectorXd
+    vmult(const Eigen::VectorXd &x) const
+    {
+      return matrix * x;
+    }
+
+    Eigen::VectorXd
+    flatten(const Stages &stages) const
+    {
+      Eigen::VectorXd result(size());
+      unsigned int k = 0;
+      for (const SystemVector &stage : stages.bodies)
+        for (const NodalVector &vector : stage)
+          for (const double value : vector)
+            result(k++) = value;
+      for (const Eigen::VectorXd &rows : stages.constraints)
+        for (const double value : rows)
+          result(k++) = value;
+      return result;
+    }
+
+    Stages
+    unflatten(const Eigen::VectorXd &x) const
+    {
+      Stages stages;
+      unsigned int k = 0;
+      for (unsigned int i = 0; i < n_stages; ++i)
+        {
+          stages.bodies.emplace_back();
+          for (const Body &body : system.bodies())
+            {
+              NodalVector vector(body.operators().n_unknowns());
+              for (double &value : vector)
+                value = x(k++);
+              stages.bodies[i].push_back(vector);
+            }
+        }
+      for (unsigned int i = 0; i < n_stages; ++i)
+        stages.constraints.push_back(x.segment(first_row(i), n_constraints));
+      return stages;
+    }
+
+    /** Forces like the inertia of accelerations of some 10 m/s^2, and gaps. */
+    Eigen::VectorXd
+    random_right_hand_side(Random &random) const
+    {
+      Eigen::VectorXd r(size());
+      for (double &value : r)
+        value = random.number(1);
+      r.head(n_stages * n_unknowns) *= 10 * M.diagonal().maxCoeff();
+      r.tail(n_stages * n_constraints) *= 1e-4;
+      return r;
+    }
+
+    /** The part of a vector that are displacements. */
+    Eigen::VectorXd
+    displacements(const Eigen::VectorXd &x) const
+    {
+      return x.head(n_stages * n_unknowns);
+    }
+
+    /** Largest relative error of displacements and of multipliers. */
+    double
+    error(const Eigen::VectorXd &x, const Eigen::VectorXd &exact) const
+    {
+      const unsigned int n = n_stages * n_unknowns;
+      double result        = relative_difference(x.head(n), exact.head(n));
+      if (n_constraints > 0)
+        result = std::max(result,
+                          relative_difference(x.tail(size() - n),
+                                              exact.tail(size() - n)));
+      return result;
+    }
+
+  private:
+    unsigned int
+    size() const
+    {
+      return n_stages * (n_unknowns + n_constraints);
+    }
+
+    unsigned int
+    first_row(const unsigned int stage) const
+    {
+      return n_stages * n_unknowns + stage * n_constraints;
+    }
+
+    void
+    assemble_bodies(const std::vector<Matrix3> &rotations)
+    {
+      M = K              = Eigen::MatrixXd::Zero(n_unknowns, n_unknowns);
+      unsigned int first = 0;
+      for (unsigned int b = 0; b < rotations.size(); ++b)
+        {
+          const BodyOperators &body = system.bodies()[b].operators();
+          const unsigned int n      = body.n_unknowns();
+          Eigen::MatrixXd R         = Eigen::MatrixXd::Zero(n, n);
+          for (unsigned int a = 0; a < body.n_nodes; ++a)
+            R.block<dim, dim>(dim * a, dim * a) = to_eigen(rotations[b]);
+          M.block(first, first, n, n) = to_dense(body.mass_matrix);
+          K.block(first, first, n, n) =
+            R * to_dense(body.stiffness_matrix) * R.transpose();
+          first += n;
+        }
+    }
+
+    /** Column by column, as velocities of single unknowns. */
+    void
+    assemble_constraints()
+    {
+      SystemVector unit = system.initial_state().velocities;
+      for (NodalVector &vector : unit)
+        vector = 0;
+      B.resize(n_constraints, n_unknowns);
+      unsigned int column = 0;
+      for (NodalVector &vector : unit)
+        for (double &value : vector)
+          {
+            value           = 1;
+            B.col(column++) = system.constraint_velocity(unit);
+            value           = 0;
+          }
+    }
+
+    const MultibodySystem &system;
+    const unsigned int n_stages;
+    const unsigned int n_constraints;
+    unsigned int n_unknowns = 0;
+    Eigen::MatrixXd M, K, B, matrix;
+  };
+} // namespace ACF::Testing
+
+#endif
