@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/mechanics/mesh_import.h>
 #include <acf/model.h>
 
 #include <deal.II/base/utilities.h>
@@ -76,6 +77,27 @@ namespace ACF
                     probes,
                     model.probes);
     }
+    // What depends on where the model file lies, so that the record of the
+    // parameters means the same elsewhere.
+    void
+    record_defaults(Model &model, ParameterHandler &prm)
+    {
+      prm.enter_subsection("Output");
+      prm.set("Directory", model.output.directory);
+      prm.leave_subsection();
+
+      prm.enter_subsection("Bodies");
+      for (const BodyParameters &body : model.bodies)
+        if (mesh_file_kind(body.mesh.mesh) != MeshFileKind::unknown)
+          {
+            const std::filesystem::path file =
+              std::filesystem::absolute(model.directory / body.mesh.mesh);
+            prm.enter_subsection(body.name);
+            prm.set("Mesh", file.lexically_normal().string());
+            prm.leave_subsection();
+          }
+      prm.leave_subsection();
+    }
   } // namespace
 
 
@@ -126,9 +148,10 @@ namespace ACF
         throw file.locate(error);
       }
 
+    model.directory = file.path().parent_path();
     if (model.output.directory.empty())
       model.output.directory = file.path().stem().string() + "-results";
-    model.directory       = file.path().parent_path();
+    record_defaults(model, prm);
     model.used_parameters = used_parameters(prm);
     return model;
   }

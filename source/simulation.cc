@@ -15,6 +15,7 @@
 
 #include <mpi.h>
 
+#include <cmath>
 #include <fstream>
 #include <ostream>
 
@@ -87,11 +88,23 @@ namespace ACF
 
 
 
+    // Components that are only round-off of the scale are shown as zero.
     std::string
-    format_vector(const Vector3 &v)
+    format_vector(const Vector3 &v, const double scale)
     {
-      return "(" + format_number(v[0]) + ", " + format_number(v[1]) + ", " +
-             format_number(v[2]) + ")";
+      std::string text;
+      for (unsigned int i = 0; i < dim; ++i)
+        text += (i == 0 ? "(" : ", ") +
+                format_number(std::abs(v[i]) < 1e-12 * scale ? 0. : v[i]);
+      return text + ")";
+    }
+
+
+
+    std::string
+    counted(const unsigned long n, const std::string &noun)
+    {
+      return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
     }
 
 
@@ -103,28 +116,29 @@ namespace ACF
         {
           const BodyOperators &operators = body.operators();
           const auto &mesh               = body.discretization().mesh();
+          const Matrix3 &inertia         = operators.inertia;
           stream << "Body '" << body.name()
                  << "': " << mesh.triangulation().n_active_cells()
                  << " quadratic "
                  << (mesh.is_simplex() ? "tetrahedra" : "hexahedra") << ", "
-                 << operators.n_unknowns() << " unknowns, volume "
-                 << format_number(operators.volume) << " m^3, mass "
-                 << format_number(operators.mass)
+                 << operators.n_unknowns() << " unknowns\n"
+                 << "  volume " << format_number(operators.volume)
+                 << " m^3, mass " << format_number(operators.mass)
                  << " kg, centre of mass in the mesh "
-                 << format_vector(operators.centre) << " m,\n"
+                 << format_vector(operators.centre, operators.length) << " m\n"
                  << "  inertia about it xx, yy, zz "
-                 << format_vector(Vector3({operators.inertia[0][0],
-                                           operators.inertia[1][1],
-                                           operators.inertia[2][2]}))
-                 << " kg m^2, yz, zx, xy "
-                 << format_vector(Vector3({operators.inertia[1][2],
-                                           operators.inertia[2][0],
-                                           operators.inertia[0][1]}))
+                 << format_vector(
+                      Vector3({inertia[0][0], inertia[1][1], inertia[2][2]}),
+                      inertia.norm())
+                 << ", yz, zx, xy "
+                 << format_vector(
+                      Vector3({inertia[1][2], inertia[2][0], inertia[0][1]}),
+                      inertia.norm())
                  << " kg m^2\n";
         }
       if (system.n_constraints() > 0)
-        stream << "Joints: " << system.joints().size() << " with "
-               << system.n_constraints() << " constraints\n";
+        stream << counted(system.joints().size(), "joint") << " with "
+               << counted(system.n_constraints(), "constraint") << "\n";
       stream << std::flush;
     }
 
@@ -137,14 +151,16 @@ namespace ACF
         const auto it = statistics.wall_times.find(phase);
         return it == statistics.wall_times.end() ? 0. : it->second;
       };
-      stream << statistics.steps << " steps (" << statistics.rejected_steps
-             << " rejected) with " << statistics.newton_iterations
-             << " iterations, "
-             << statistics.real_factorizations +
-                  statistics.complex_factorizations
-             << " factorisations (" << format_bytes(statistics.factor_bytes)
-             << "), " << statistics.real_solves + statistics.complex_solves
-             << " solves\n"
+      stream << counted(statistics.steps, "step") << " ("
+             << statistics.rejected_steps << " rejected) with "
+             << counted(statistics.newton_iterations, "iteration") << ", "
+             << counted(statistics.real_factorizations +
+                          statistics.complex_factorizations,
+                        "factorisation")
+             << " (" << format_bytes(statistics.factor_bytes) << "), "
+             << counted(statistics.real_solves + statistics.complex_solves,
+                        "solve")
+             << "\n"
              << "Time: assembly " << format_duration(time("assembly"))
              << ", factorisation " << format_duration(time("factorisation"))
              << ", time steps "

@@ -427,7 +427,14 @@ namespace ACF
       line.append(buffer.data(), end);
     };
 
-    append(state.time);
+    // multiples of an interval are not exact: twelve digits show what is meant
+    const auto end = std::to_chars(buffer.data(),
+                                   buffer.data() + buffer.size(),
+                                   state.time,
+                                   std::chars_format::general,
+                                   12)
+                       .ptr;
+    line.append(buffer.data(), end);
     for (const auto &probe : probes)
       for (const double value : probe->evaluate(state))
         {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/body.h>
 #include <acf/mechanics/mesh_import.h>
@@ -70,7 +71,7 @@ namespace ACF
         throw InputError(section(),
                          entry,
                          value == 0 ? "nothing or zero"
-                                    : "'" + std::to_string(value) + "'",
+                                    : "'" + format_number(value) + "'",
                          "a positive number");
     };
     require_positive("Young's modulus", material.youngs_modulus);
@@ -78,7 +79,7 @@ namespace ACF
     if (!(material.poissons_ratio > -1 && material.poissons_ratio < 0.5))
       throw InputError(section(),
                        "Poisson's ratio",
-                       "'" + std::to_string(material.poissons_ratio) + "'",
+                       "'" + format_number(material.poissons_ratio) + "'",
                        "a number larger than -1 and smaller than 0.5");
   }
 

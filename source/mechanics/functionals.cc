@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/body_operators.h>
 #include <acf/mechanics/functionals.h>
@@ -124,6 +125,23 @@ namespace ACF
     for (unsigned int k = 0; k < nodes.size(); ++k)
       for (unsigned int i = 0; i < dim; ++i)
         force[dim * nodes[k] + i] += weights[k] * F[i];
+  }
+
+
+
+  double
+  scalar_product(const NodalFunctional &first, const NodalFunctional &second)
+  {
+    double sum = 0;
+    for (unsigned int k = 0, l = 0;
+         k < first.nodes.size() && l < second.nodes.size();)
+      if (first.nodes[k] < second.nodes[l])
+        ++k;
+      else if (first.nodes[k] > second.nodes[l])
+        ++l;
+      else
+        sum += first.weights[k++] * second.weights[l++];
+    return sum;
   }
 
 
@@ -280,8 +298,7 @@ namespace ACF
         distance = std::min(distance, node.distance(X));
       }
     throw SimulationError("a point outside the body, " +
-                          std::to_string(distance) +
-                          " m from the nearest node");
+                          format_number(distance) + " m from the nearest node");
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/multibody_system.h>
 #include <acf/mechanics/reduced_strain.h>
@@ -63,7 +64,51 @@ namespace ACF
             joint.matrix.middleCols(dim * p, dim);
         next_row[joint.body] += joint.n_constraints();
       }
+    check_redundant_constraints(joints);
     check_initial_velocities(joints);
+  }
+
+
+
+  void
+  MultibodySystem::check_redundant_constraints(
+    const std::vector<JointParameters> &joints) const
+  {
+    for (unsigned int b = 0; b < system_bodies.size(); ++b)
+      {
+        // B B^T with B = D S, from the products of the functionals' weights
+        const auto &functionals  = system_bodies[b].joint_functionals();
+        const unsigned int n     = functionals.size();
+        Eigen::MatrixXd products = Eigen::MatrixXd::Zero(dim * n, dim * n);
+        for (unsigned int p = 0; p < n; ++p)
+          for (unsigned int q = 0; q < n; ++q)
+            products.block<dim, dim>(dim * p, dim * q) =
+              scalar_product(functionals[p], functionals[q]) *
+              Eigen::Matrix3d::Identity();
+        const Eigen::MatrixXd &D = body_constraints[b].matrix;
+        Eigen::MatrixXd gram     = D * products * D.transpose();
+        const Eigen::VectorXd scale =
+          gram.diagonal().cwiseSqrt().cwiseInverse();
+        gram = scale.asDiagonal() * gram * scale.asDiagonal();
+
+        // the first joint with which the rows become dependent
+        unsigned int n_rows = 0;
+        for (unsigned int j = 0; j < system_joints.size(); ++j)
+          if (system_joints[j].body == b)
+            {
+              n_rows += system_joints[j].n_constraints();
+              const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(
+                gram.topLeftCorner(n_rows, n_rows), Eigen::EigenvaluesOnly);
+              if (!(solver.eigenvalues()(0) > 1e-10))
+                throw InputError(
+                  joints[j].section(),
+                  "Between",
+                  "a joint that repeats constraints which it or joints before "
+                  "it impose on the body '" +
+                    system_bodies[b].name() + "'",
+                  "joints that constrain no motion of a surface twice");
+            }
+      }
   }
 
 
@@ -89,7 +134,7 @@ namespace ACF
             "Between",
             "an initial velocity of the body '" +
               system_bodies[joint.body].name() +
-              "' that the joint does not allow (" + std::to_string(largest) +
+              "' that the joint does not allow (" + format_number(largest) +
               " m/s or rad/s in a blocked direction)",
             "a Velocity and an Angular velocity of the body that leave the "
             "joint where it is");

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/radau_stepper.h>
@@ -177,7 +178,7 @@ namespace ACF
         if (!frame)
           throw SimulationError("Body '" + body.name() +
                                 "' is turned inside out at time " +
-                                std::to_string(state.time) +
+                                format_number(state.time) +
                                 " s: its mean deformation gradient has a "
                                 "determinant that is not positive.");
         rotations.push_back(frame->rotation);

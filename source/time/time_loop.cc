@@ -91,12 +91,12 @@ namespace ACF
           {
             ++statistics.rejected_steps;
             if (!controller.halve())
-              throw SimulationError("The step of " + std::to_string(step_size) +
-                                    " s at time " + std::to_string(state.time) +
-                                    " s failed after " +
-                                    std::to_string(parameters.max_halvings) +
-                                    " halvings: " + report.failure +
-                                    ". The results up to this time are kept.");
+              throw SimulationError(
+                "The step of " + format_number(step_size) + " s at time " +
+                format_number(state.time) + " s failed after " +
+                std::to_string(parameters.max_halvings) +
+                (parameters.max_halvings == 1 ? " halving: " : " halvings: ") +
+                report.failure + ". The results up to this time are kept.");
             ++statistics.halvings;
             continue;
           }

@@ -169,37 +169,30 @@ TEST(BodyOperators, MassAndStiffnessAgainstReassembly)
       const BodyOperators &body       = example.operators;
       const Eigen::MatrixXd mass      = to_dense(body.mass_matrix);
       const Eigen::MatrixXd stiffness = to_dense(body.stiffness_matrix);
-      const Quadrature<dim> fine      = fine_quadrature(example.body.mesh());
 
       EXPECT_LT(relative_difference(mass, mass.transpose()), 1e-14);
       EXPECT_LT(relative_difference(stiffness, stiffness.transpose()), 1e-13);
 
-      const double mass_error =
-        relative_difference(mass, reassemble_mass(example.body, fine));
-      const double stiffness_error =
-        relative_difference(stiffness,
-                            reassemble_stiffness(example.body, fine));
+      const auto errors = [&](const Quadrature<dim> &rule) {
+        return std::make_pair(
+          relative_difference(mass, reassemble_mass(example.body, rule)),
+          relative_difference(stiffness,
+                              reassemble_stiffness(example.body, rule)));
+      };
+      const auto [mass_error, stiffness_error] =
+        errors(fine_quadrature(example.body.mesh()));
       report(example.name + ", mass", mass_error);
       report(example.name + ", stiffness", stiffness_error);
-      if (example.is_affine)
+      // three Gauss points per direction: inexact for the mass, whose degree is
+      // six in each direction, and for the rational functions of the stiffness
+      EXPECT_LT(mass_error, example.is_affine ? 1e-13 : 2e-3) << example.name;
+      EXPECT_LT(stiffness_error, example.is_affine ? 1e-12 : 5e-3)
+        << example.name;
+      if (!example.is_affine)
         {
-          EXPECT_LT(mass_error, 1e-13) << example.name;
-          EXPECT_LT(stiffness_error, 1e-12) << example.name;
-        }
-      else
-        {
-          // three Gauss points per direction: not exact for rational functions
-          EXPECT_LT(mass_error, 1e-2) << example.name;
-          EXPECT_LT(stiffness_error, 5e-2) << example.name;
-          EXPECT_LT(relative_difference(
-                      mass, reassemble_mass(example.body, QGauss<dim>(3))),
-                    1e-13)
-            << example.name;
-          EXPECT_LT(relative_difference(stiffness,
-                                        reassemble_stiffness(example.body,
-                                                             QGauss<dim>(3))),
-                    1e-12)
-            << example.name;
+          const auto same_rule = errors(QGauss<dim>(3));
+          EXPECT_LT(same_rule.first, 1e-13) << example.name;
+          EXPECT_LT(same_rule.second, 1e-12) << example.name;
         }
     }
 }
@@ -249,7 +242,6 @@ TEST(BodyOperators, Definiteness)
 TEST(BodyOperators, StiffnessOfAffineFields)
 {
   Random random;
-  const Material material = test_material();
   for (const Example &example : examples())
     {
       const BodyOperators &body = example.operators;
@@ -271,7 +263,7 @@ TEST(BodyOperators, StiffnessOfAffineFields)
           body.stiffness_matrix.vmult(force, u2);
           const SymmetricTensor<2, dim> strain = symmetrize(G);
           const double energy =
-            body.volume / 2 * strain * (elasticity(material) * strain);
+            body.volume / 2 * strain * (elasticity(test_material()) * strain);
           energy_error =
             std::max(energy_error, std::abs(u2 * force / 2 / energy - 1));
         }
@@ -397,9 +389,7 @@ TEST(BodyOperators, RigidBodyOfBoxes)
           .sum();
       for (unsigned int k = 0; k < body.n_unknowns(); ++k)
         ASSERT_NEAR(masses(k), body.nodal_masses[k / dim], 1e-14 * body.mass);
-      EXPECT_NEAR(body.mass,
-                  test_material().density * body.volume,
-                  1e-12 * body.mass);
+      EXPECT_NEAR(body.mass / (1200 * body.volume), 1, 1e-12);
 
       if (example.name.substr(0, 3) != "box")
         continue;
@@ -444,7 +434,6 @@ TEST(BodyOperators, RigidBodyOfCylindersConverges)
           const Matrix3 inertia = across * identity_matrix() +
                                   (along - across) * outer_product(axis, axis);
           EXPECT_LT((body.centre - centre).norm(), 1e-13);
-          EXPECT_LT(body.volume, exact); // inscribed
           volume_errors.push_back(1 - body.volume / exact);
           inertia_errors.push_back((body.inertia - inertia).norm() /
                                    inertia.norm());

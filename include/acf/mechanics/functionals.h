@@ -42,6 +42,12 @@ namespace ACF
 
 
 
+  /** $\sum_a w_a v_a$ of two functionals' weights. */
+  double
+  scalar_product(const NodalFunctional &first, const NodalFunctional &second);
+
+
+
   /** Area, centroid and second moments of a surface in the reference state. */
   struct SurfaceGeometry
   {

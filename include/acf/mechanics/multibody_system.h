@@ -80,8 +80,8 @@ namespace ACF
 
     /**
      * @param directory where relative mesh file names start
-     * @throws InputError if joints do not fit to the bodies or the initial
-     * velocities violate a constraint
+     * @throws InputError if joints do not fit to the bodies, repeat constraints
+     * of other joints, or the initial velocities violate a constraint
      */
     MultibodySystem(const std::vector<BodyParameters> &bodies,
                     const std::vector<JointParameters> &joints,
@@ -178,6 +178,10 @@ namespace ACF
   private:
     void
     check_initial_velocities(const std::vector<JointParameters> &joints) const;
+
+    void
+    check_redundant_constraints(
+      const std::vector<JointParameters> &joints) const;
 
     Eigen::VectorXd
     apply_constraints(const SystemVector &x) const;
