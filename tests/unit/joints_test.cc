@@ -373,3 +373,28 @@ TEST(Joints, Errors)
                                            "1,0,0.5; 0,1,0")),
                      {"Joints/joint", "'Directions'", "oblique"});
 }
+
+
+
+TEST(Joints, RepeatedConstraintsAreAnError)
+{
+  const auto system = [](const std::string &first, const std::string &second) {
+    std::vector<JointParameters> joints = {
+      joint_parameters("spherical", "arm: x min, ground"),
+      joint_parameters("mean position", first, "y, z"),
+      joint_parameters("mean position", second, "z")};
+    joints[1].name = "guide";
+    joints[2].name = "repeated";
+    MultibodySystem({body_parameters("arm", box + hexahedra)},
+                    joints,
+                    LoadParameters(),
+                    ".");
+  };
+  EXPECT_NO_THROW(system("arm: x max, ground", "arm: y max, ground"));
+  expect_input_error(
+    [&]() { system("arm: x max, ground", "arm: x max, ground"); },
+    {"Joints/repeated", "'Between'", "'arm'"});
+  expect_input_error(
+    [&]() { system("arm: x min, ground", "arm: y max, ground"); },
+    {"Joints/guide", "'Between'"});
+}

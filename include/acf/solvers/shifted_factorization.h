@@ -54,7 +54,8 @@ namespace ACF
      * @param body provides mass and stiffness
      * @param shift $\sigma$, 1/s^2
      * @throws SimulationError if the matrix is singular, memory runs out, or
-     * the test solve has a backward error of more than 1e-10
+     * the test solve has a backward error of more than 1e-10 (a matrix that is
+     * singular up to round-off, as for the shift zero, may pass)
      */
     ShiftedFactorization(const BodyOperators &body, const Number shift);
 
