@@ -87,13 +87,15 @@ namespace ACF
       prm.leave_subsection();
 
       prm.enter_subsection("Bodies");
-      for (const BodyParameters &body : model.bodies)
+      for (BodyParameters &body : model.bodies)
         if (mesh_file_kind(body.mesh.mesh) != MeshFileKind::unknown)
           {
+            const std::string name = body.mesh.mesh;
             const std::filesystem::path file =
-              std::filesystem::absolute(model.directory / body.mesh.mesh);
+              std::filesystem::absolute(model.directory / name);
             prm.enter_subsection(body.name);
             prm.set("Mesh", file.lexically_normal().string());
+            body.mesh.mesh = name; // messages name the file as the model does
             prm.leave_subsection();
           }
       prm.leave_subsection();
