@@ -73,7 +73,7 @@ namespace ACF
       for (unsigned int i = 1; i <= 4; ++i)
         icntl(i) = (i == 4 ? 0 : -1); // silent
       icntl(6)          = 0;          // no permutation of columns
-      icntl(7)          = 5;          // nested dissection (METIS)
+      icntl(7)          = 4;          // PORD; METIS is not in Debian's MUMPS
       icntl(8)          = 0;          // no scaling
       icntl(12)         = 1;          // no compressed ordering
       icntl(13)         = 1;          // no parallel root
