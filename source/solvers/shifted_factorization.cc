@@ -72,12 +72,14 @@ namespace ACF
       MumpsInterface<Number>::call(structure);
       for (unsigned int i = 1; i <= 4; ++i)
         icntl(i) = (i == 4 ? 0 : -1); // silent
-      icntl(6)          = 0;          // no permutation of columns
-      icntl(7)          = 4;          // PORD; METIS is not in Debian's MUMPS
-      icntl(8)          = 0;          // no scaling
-      icntl(12)         = 1;          // no compressed ordering
-      icntl(13)         = 1;          // no parallel root
-      structure.cntl[0] = 0;          // no pivoting
+      icntl(6)  = 0;                  // no permutation of columns
+      icntl(8)  = 0;                  // no scaling
+      icntl(12) = 1;                  // no compressed ordering
+      icntl(13) = 1;                  // no parallel root
+      // Ordering: the choice of MUMPS, which is PORD for all but small bodies;
+      // asked for by number, PORD quits the program on small dense ones.
+      icntl(7)          = 7;
+      structure.cntl[0] = 0; // no pivoting
     }
 
     ~Mumps()
