@@ -51,12 +51,16 @@ namespace Tests
   {
   public:
     /** @param interval between two recorded states, s */
+    RecordedRun(const ParameterFile &file, const double interval)
+      : model(read_model(file))
+      , system(model.bodies, model.joints, model.loads, model.directory)
+      , recorder(system, model.probes, interval)
+    {}
+
     RecordedRun(const std::string &model_file,
                 const double interval,
                 const std::vector<std::string> &overrides = {})
-      : model(read_model(ParameterFile::from_text(model_file, overrides)))
-      , system(model.bodies, model.joints, model.loads, model.directory)
-      , recorder(system, model.probes, interval)
+      : RecordedRun(ParameterFile::from_text(model_file, overrides), interval)
     {}
 
     void

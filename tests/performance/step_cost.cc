@@ -15,6 +15,7 @@
 #include <array>
 #include <iostream>
 
+#include "pendulum_model.h"
 #include "recorded_run.h"
 
 namespace
@@ -24,38 +25,10 @@ namespace
   std::string
   model_file(const std::array<unsigned int, 3> &cells)
   {
-    std::ostringstream text;
-    text << R"(
-subsection Bodies
-  set Names = pendulum
-  subsection pendulum
-    set Mesh            = box
-    set Element         = tetrahedron
-    set Box from        = -0.00125, 0, -0.025
-    set Box to          =  0.00125, 1,  0.025
-    set Cells           = )"
-         << cells[0] << ", " << cells[1] << ", " << cells[2] << R"(
-    set Young's modulus = 2.1e8
-    set Poisson's ratio = 0.3
-    set Density         = 7800
-  end
-end
-subsection Joints
-  set Names = hinge
-  subsection hinge
-    set Type    = revolute
-    set Between = pendulum: y min, ground
-    set Axis    = 1, 0, 0
-  end
-end
-subsection Loads
-  set Gravity = 0, 0, -9.81
-end
-subsection Time integration
-  set Step size = 1e-3
-end
-)";
-    return text.str();
+    return pendulum_model("tetrahedron",
+                          std::to_string(cells[0]) + ", " +
+                            std::to_string(cells[1]) + ", " +
+                            std::to_string(cells[2]));
   }
 
   struct Cost
