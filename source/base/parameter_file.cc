@@ -540,13 +540,6 @@ namespace ACF
         }
   }
 
-  bool
-  ParameterFile::is_set(const std::string &section,
-                        const std::string &entry) const
-  {
-    return find(section, entry) != nullptr;
-  }
-
   InputError
   ParameterFile::locate(const InputError &error) const
   {

@@ -301,18 +301,4 @@ namespace ACF
                           format_number(distance) + " m from the nearest node");
   }
 
-
-
-  NodalFunctional
-  linear_combination(const NodalFunctional &first,
-                     const double factor,
-                     const NodalFunctional &second)
-  {
-    std::map<unsigned int, double> weights;
-    for (unsigned int k = 0; k < first.nodes.size(); ++k)
-      weights[first.nodes[k]] += first.weights[k];
-    for (unsigned int k = 0; k < second.nodes.size(); ++k)
-      weights[second.nodes[k]] += factor * second.weights[k];
-    return from_map(weights);
-  }
 } // namespace ACF

@@ -99,25 +99,19 @@ namespace ACF
 
 
 
-  StageShape
+  std::vector<double>
   stage_shape(const ButcherTableau &tableau, const double c)
   {
     const Eigen::VectorXd &nodes = tableau.c;
-    StageShape shape;
+    std::vector<double> values;
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
-        double value      = c * c / (nodes(i) * nodes(i));
-        double derivative = 2 * c / (nodes(i) * nodes(i));
+        double value = c * c / (nodes(i) * nodes(i));
         for (unsigned int j = 0; j < tableau.n_stages(); ++j)
           if (j != i)
-            {
-              const double factor = (c - nodes(j)) / (nodes(i) - nodes(j));
-              derivative = derivative * factor + value / (nodes(i) - nodes(j));
-              value *= factor;
-            }
-        shape.values.push_back(value);
-        shape.derivatives.push_back(derivative);
+            value *= (c - nodes(j)) / (nodes(i) - nodes(j));
+        values.push_back(value);
       }
-    return shape;
+    return values;
   }
 } // namespace ACF

@@ -126,13 +126,14 @@ namespace ACF
     const unsigned int last = tableau.n_stages() - 1;
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
-        const StageShape shape = stage_shape(tableau, 1 + tableau.c(i) * ratio);
+        const std::vector<double> shape =
+          stage_shape(tableau, 1 + tableau.c(i) * ratio);
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
           {
             stages[i][b] = 0;
             if (accepted_step_size > 0)
               for (unsigned int j = 0; j <= last; ++j)
-                stages[i][b].add(shape.values[j] - (j == last ? 1. : 0.) -
+                stages[i][b].add(shape[j] - (j == last ? 1. : 0.) -
                                    tableau.c(i) * ratio * A_inverse(last, j),
                                  accepted_stages[j][b]);
           }
@@ -365,10 +366,10 @@ namespace ACF
   SystemState
   RadauStepper::interpolate(const double time) const
   {
-    const double tau       = accepted_step_size;
-    const double c         = (time - step_start.time) / tau;
-    const StageShape shape = stage_shape(tableau, c);
-    const unsigned int s   = tableau.n_stages();
+    const double tau                = accepted_step_size;
+    const double c                  = (time - step_start.time) / tau;
+    const std::vector<double> shape = stage_shape(tableau, c);
+    const unsigned int s            = tableau.n_stages();
 
     // Lagrange polynomials of the stages, for the multipliers, and of the
     // stages and the start, for the velocities
@@ -395,7 +396,7 @@ namespace ACF
         state.positions[b].add(c * tau, step_start.velocities[b]);
         for (unsigned int i = 0; i < s; ++i)
           {
-            state.positions[b].add(shape.values[i], accepted_stages[i][b]);
+            state.positions[b].add(shape[i], accepted_stages[i][b]);
             state.velocities[b].add(velocity_of_stages(i),
                                     accepted_stages[i][b]);
           }

@@ -235,39 +235,29 @@ TEST(StageTriangularization, WorstContraction)
     }
 }
 
-TEST(StageShape, ValuesAndDerivatives)
+TEST(StageShape, ValuesAndPolynomials)
 {
   for (unsigned int s = 1; s <= 3; ++s)
     {
-      const ButcherTableau tableau = radau_iia(s);
-      const StageShape start       = stage_shape(tableau, 0);
+      const ButcherTableau tableau    = radau_iia(s);
+      const std::vector<double> start = stage_shape(tableau, 0);
       for (unsigned int i = 0; i < s; ++i)
         {
-          EXPECT_EQ(start.values[i], 0);
-          EXPECT_EQ(start.derivatives[i], 0);
+          EXPECT_EQ(start[i], 0);
           for (unsigned int j = 0; j < s; ++j)
-            EXPECT_NEAR(stage_shape(tableau, tableau.c(j)).values[i],
+            EXPECT_NEAR(stage_shape(tableau, tableau.c(j))[i],
                         i == j ? 1 : 0,
                         1e-14);
         }
       for (const double c : {-0.3, 0.1, 0.5, 0.9, 1., 1.7})
         {
-          const StageShape shape = stage_shape(tableau, c);
-          const double h         = 1e-5;
-          const StageShape left  = stage_shape(tableau, c - h);
-          const StageShape right = stage_shape(tableau, c + h);
-          for (unsigned int i = 0; i < s; ++i)
-            EXPECT_NEAR(shape.derivatives[i],
-                        (right.values[i] - left.values[i]) / (2 * h),
-                        1e-6)
-              << s << " " << c;
-
+          const std::vector<double> shape = stage_shape(tableau, c);
           // c^2 ... c^(s + 1) are reproduced
           for (unsigned int k = 2; k <= s + 1; ++k)
             {
               double sum = 0;
               for (unsigned int i = 0; i < s; ++i)
-                sum += std::pow(tableau.c(i), k) * shape.values[i];
+                sum += std::pow(tableau.c(i), k) * shape[i];
               EXPECT_NEAR(sum, std::pow(c, k), 1e-12);
             }
         }

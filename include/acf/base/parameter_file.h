@@ -80,10 +80,6 @@ namespace ACF
     void
     parse(ParameterHandler &prm) const;
 
-    /** Whether the user gave this entry, in the file or as an override. */
-    bool
-    is_set(const std::string &section, const std::string &entry) const;
-
     /**
      * The same error, preceded by where its entry has got the value: file and
      * line (the line of the subsection if the entry is not set), or the

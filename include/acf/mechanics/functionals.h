@@ -114,12 +114,6 @@ namespace ACF
    */
   NodalFunctional
   material_point(const BodyDiscretization &body, const Point<dim> &X);
-
-  /** The sum of two functionals, the second scaled. */
-  NodalFunctional
-  linear_combination(const NodalFunctional &first,
-                     const double factor,
-                     const NodalFunctional &second);
 } // namespace ACF
 
 #endif

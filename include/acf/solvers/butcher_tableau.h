@@ -93,17 +93,11 @@ namespace ACF
   triangularize_stages(const ButcherTableau &tableau);
 
   /**
-   * Value (and derivative) at c of the polynomial of degree s + 1 with double
-   * root 0 and value 1 at $c_i$, zero at the other abscissae. Displacements
-   * over a step are $u_n + c \tau v_n + \sum_i \ell_i(c) Z_i$.
+   * Values $\ell_i(c)$ of the polynomials of degree s + 1 with the double root
+   * 0 and the value 1 at $c_i$, zero at the other abscissae. Positions over a
+   * step are $x_n + c \tau v_n + \sum_i \ell_i(c) Z_i$.
    */
-  struct StageShape
-  {
-    std::vector<double> values;
-    std::vector<double> derivatives;
-  };
-
-  StageShape
+  std::vector<double>
   stage_shape(const ButcherTableau &tableau, const double c);
 } // namespace ACF
 
