@@ -4,80 +4,12 @@
 #ifndef tests_reference_planar_pendulum_h
 #define tests_reference_planar_pendulum_h
 
-#include <optional>
 #include <vector>
 
-/**
- * Solutions to compare the three-dimensional program with, computed by another
- * theory and without any code of the program.
- */
+#include "reference/planar_beam.h"
+
 namespace Reference
 {
-  /**
-   * A beam with rectangular cross-section that moves in the y-z plane. The
-   * defaults are the pendulum of Gerstmayr and Schoeberl.
-   */
-  struct PlanarBeam
-  {
-    /** Units: m. */
-    double length = 1;
-
-    /** Side of the cross-section in the plane of motion. Units: m. */
-    double height = 0.05;
-
-    /** Side of the cross-section normal to the plane. Units: m. */
-    double width = 0.0025;
-
-    /** Units: Pa. */
-    double youngs_modulus = 2.1e8;
-
-    /** No units. */
-    double poissons_ratio = 0.3;
-
-    /** Units: kg/m^3. */
-    double density = 7800;
-
-    /** Points into -z; may be zero. Units: m/s^2. */
-    double gravity = 9.81;
-  };
-
-  /** What a cross-section may do. */
-  enum class BeamTheory
-  {
-    /** No shear, no rotary inertia: the beam is a line with mass. */
-    bernoulli_euler,
-    /** Shear flexibility and rotary inertia. */
-    timoshenko
-  };
-
-  /** The model of the beam and its discretisation. */
-  struct BeamOptions
-  {
-    BeamTheory theory = BeamTheory::timoshenko;
-
-    /** Whether the beam may also become longer, elastically. */
-    bool extensible = false;
-
-    /**
-     * The fraction kappa of the cross-section that carries shear; without a
-     * value cowper_coefficient(). Read by the Timoshenko theory only.
-     */
-    std::optional<double> shear_coefficient;
-
-    /**
-     * Number of polynomials for the deflection. The default PlanarBeam has the
-     * mid-span deflection of the first second to 3e-6 m with 12 of them, to
-     * 1e-6 m with 20: the release excites also the high frequencies.
-     */
-    unsigned int n_shape_functions = 12;
-
-    /**
-     * Upper bound of the time step. The default contributes less than 1e-9 m
-     * with the default beam and number of shape functions. Units: s.
-     */
-    double step_size = 1e-4;
-  };
-
   /** The pendulum at one time. */
   struct PendulumState
   {
@@ -113,18 +45,19 @@ namespace Reference
     total_energy() const;
   };
 
-  /** Cowper's 10 (1 + nu) / (12 + 11 nu) for a rectangle. */
-  double
-  cowper_coefficient(const double poissons_ratio);
-
   /**
    * Swing of a beam that is pinned to the ground at the origin and released
    * at time zero: from rest, undeformed, pointing into +y.
    *
    * The frame of reference rotates with the chord from the pin to the tip. The
    * elastic deformation in it is that of the linear theory (no geometric
-   * stiffening), the inertia forces are complete; planar_pendulum.cc derives
-   * the equations. Integrated with the Gauss method of order 10.
+   * stiffening), the inertia forces are complete; planar_beam.cc derives the
+   * equations. Integrated with the Gauss method of order 10.
+   *
+   * The default PlanarBeam has the mid-span deflection of the first second to
+   * 3e-6 m with 12 shape functions, to 1e-6 m with 20: the release excites also
+   * the high frequencies. The default step size contributes less than 1e-9 m
+   * with the default beam and number of shape functions.
    *
    * @param beam geometry and material
    * @param options model and discretisation
