@@ -24,6 +24,24 @@ namespace ACF
       for (unsigned int i = 0; i < dim; ++i)
         v[dim * a + i] = value[i];
     }
+
+
+
+    /** From k and c to $f_a = R (k_a - P g_a)$, in place. */
+    void
+    balance_moment(const BodyOperators &body,
+                   const BodyRotation &frame,
+                   const Vector3 &c,
+                   NodalVector &force)
+    {
+      const Matrix3 P = frame.contract(c);
+      for (unsigned int a = 0; a < body.n_nodes; ++a)
+        set_node_value(force,
+                       a,
+                       frame.rotation *
+                         (node_value(force, a) -
+                          P * node_value(body.averaging_vectors, a)));
+    }
   } // namespace
 
 
@@ -75,6 +93,34 @@ namespace ACF
 
 
 
+  void
+  co_rotated_velocity(const BodyOperators &body,
+                      const BodyRotation &frame,
+                      const NodalVector &positions,
+                      const NodalVector &velocities,
+                      NodalVector &rate)
+  {
+    AssertDimension(rate.size(), body.n_unknowns());
+    const Matrix3 inverse = transpose(frame.rotation);
+    const Matrix3 H = inverse * mean_deformation_gradient(body, velocities);
+    Vector3 spin;
+    for (unsigned int i = 0; i < dim; ++i)
+      spin[i] = scalar_product(frame.spin_gradient[i], H);
+
+    const Vector3 centre          = mass_mean(body, positions);
+    const Vector3 centre_velocity = mass_mean(body, velocities);
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      {
+        const Vector3 y = inverse * (node_value(positions, a) - centre);
+        set_node_value(rate,
+                       a,
+                       inverse * (node_value(velocities, a) - centre_velocity) -
+                         cross_product_3d(spin, y));
+      }
+  }
+
+
+
   std::optional<double>
   reduced_strain_force(const BodyOperators &body,
                        const RotationMeasure measure,
@@ -101,13 +147,60 @@ namespace ACF
         c += cross_product_3d(q_a, k_a);
       }
 
-    const Matrix3 P = frame->contract(c);
-    for (unsigned int a = 0; a < body.n_nodes; ++a)
-      set_node_value(force,
-                     a,
-                     frame->rotation *
-                       (node_value(force, a) -
-                        P * node_value(body.averaging_vectors, a)));
+    balance_moment(body, *frame, c, force);
     return energy;
+  }
+
+
+
+  bool
+  damped_reduced_strain_force(const BodyOperators &body,
+                              const RotationMeasure measure,
+                              const NodalVector &positions,
+                              const NodalVector &velocities,
+                              const double mass_damping,
+                              const double stiffness_damping,
+                              NodalVector &force,
+                              NodalVector &scratch)
+  {
+    const std::optional<BodyRotation> frame =
+      body_rotation(mean_deformation_gradient(body, positions), measure);
+    if (!frame)
+      return false;
+
+    NodalVector &rate = scratch;
+    NodalVector momentum;
+    co_rotated_velocity(body, *frame, positions, velocities, rate);
+    if (mass_damping != 0)
+      {
+        momentum.reinit(rate.size(), true);
+        body.mass_matrix.vmult(momentum, rate);
+      }
+
+    // force = A (q + beta q'), by way of force = q
+    co_rotated_displacement(body, positions, frame->rotation, force);
+    rate.sadd(stiffness_damping, 1, force);
+    body.stiffness_matrix.vmult(force, rate);
+
+    // A annihilates rotations of the reference body, so that its part of the
+    // moment c needs only the small q, not y = q + X.
+    NodalVector &q = scratch;
+    co_rotated_displacement(body, positions, frame->rotation, q);
+    Vector3 c;
+    for (unsigned int a = 0; a < body.n_nodes; ++a)
+      {
+        const Vector3 q_a = node_value(q, a);
+        c += cross_product_3d(q_a, node_value(force, a));
+        if (mass_damping == 0)
+          continue;
+        const Vector3 y_a =
+          q_a + node_value(body.reference_positions, a) - body.centre;
+        const Vector3 drag = mass_damping * node_value(momentum, a);
+        c += cross_product_3d(y_a, drag);
+        set_node_value(force, a, node_value(force, a) + drag);
+      }
+
+    balance_moment(body, *frame, c, force);
+    return true;
   }
 } // namespace ACF

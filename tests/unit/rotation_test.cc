@@ -231,6 +231,42 @@ TEST(Rotation, DerivativeAgainstCentralDifferences)
     }
 }
 
+TEST(Rotation, SecondDerivativeAgainstCentralDifferences)
+{
+  Random random;
+  for (const RotationMeasure measure : measures)
+    {
+      double error = 0;
+      for (unsigned int n = 0; n < n_samples; ++n)
+        {
+          const Matrix3 F = random_gradient(random), H = random.matrix(1);
+          const BodyRotation result = *body_rotation(F, measure);
+          const Matrix3 &R          = result.rotation;
+          const Vector3 first       = apply(result.spin_gradient, H);
+          const Matrix3 W           = cross_product_matrix(first);
+          const Vector3 second =
+            apply(result.spin_gradient, W * (W * transpose(R) * F - 2. * H));
+
+          // the rate of the spin of R(eps) is the second derivative alone
+          const double h  = 1e-5;
+          const auto spin = [&](const double eps) {
+            const BodyRotation moved = *body_rotation(F + eps * R * H, measure);
+            return apply(moved.spin_gradient,
+                         transpose(moved.rotation) * R * H);
+          };
+          const Vector3 exact = (spin(h) - spin(-h)) / (2 * h);
+          error               = std::max(error,
+                           (second - exact).norm() /
+                             std::pow(result.spin_gradient.norm(), 2));
+        }
+      EXPECT_LT(error, 1e-7);
+      report(measure == RotationMeasure::polar
+               ? "second derivative of the polar rotation"
+               : "second derivative of the three-point rotation",
+             error);
+    }
+}
+
 TEST(Rotation, Contraction)
 {
   Random random;

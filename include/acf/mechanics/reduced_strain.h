@@ -42,6 +42,24 @@ namespace ACF
                           NodalVector &displacement);
 
   /**
+   * Rate of the co-rotated displacement,
+   * $\dot q_a = R^T (v_a - \bar v) - \dot\varphi \times R^T (x_a - \bar x)$
+   * with the velocity $\bar v$ of the centre of mass and the spin
+   * $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes g_a$.
+   * It vanishes if the body moves rigidly, whatever its deformation.
+   *
+   * @param frame the rotation of the body at @p positions
+   * @param velocities $v_a$, m/s
+   * @param[out] rate $\dot q$, m/s; must have the size of @p positions
+   */
+  void
+  co_rotated_velocity(const BodyOperators &body,
+                      const BodyRotation &frame,
+                      const NodalVector &positions,
+                      const NodalVector &velocities,
+                      NodalVector &rate);
+
+  /**
    * The elastic force of the reduced strain $\mathrm{Sym}(R^T \nabla \tilde u)$
    * (paper Eq. (12)), the exact gradient of $W = \frac12 q^T A q$:
    * \f[ f_a = R (k_a - P g_a), \quad k = A q, \quad
@@ -63,6 +81,40 @@ namespace ACF
                        const NodalVector &positions,
                        NodalVector &force,
                        NodalVector &scratch);
+
+  /**
+   * The force of reduced_strain_force() with Rayleigh damping in the rotating
+   * frame, on the same side of the equations of motion:
+   * \f[ f_a = R (k_a - P g_a), \quad
+   *     k = A (q + \beta \dot q) + \alpha M \dot q, \quad
+   *     c = \sum_a y_a \times k_a, \quad P_{jk} = c_i \Lambda_{ijk} \f]
+   * with $y_a = R^T (x_a - \bar x)$. This is the adjoint of the linear map
+   * $v \mapsto \dot q$, so that $f \cdot v = k \cdot \dot q$: besides the power
+   * $\dot W$ of the elastic force it takes
+   * $\alpha\, \dot q^T M \dot q + \beta\, \dot q^T A \dot q \ge 0$ from the
+   * body. The damping has neither a resultant nor a moment and does not resist
+   * rigid motions.
+   *
+   * One product with A, and one with M if $\alpha \ne 0$. They do not give the
+   * energy W.
+   *
+   * @param velocities $v_a$, m/s
+   * @param mass_damping $\alpha$, 1/s
+   * @param stiffness_damping $\beta$, s
+   * @param[out] force $f_a$, N; must have the size of @p positions
+   * @param scratch work space; must have the size of @p positions
+   * @return false, and no force, if the mean deformation gradient has no
+   * rotation
+   */
+  bool
+  damped_reduced_strain_force(const BodyOperators &body,
+                              const RotationMeasure measure,
+                              const NodalVector &positions,
+                              const NodalVector &velocities,
+                              const double mass_damping,
+                              const double stiffness_damping,
+                              NodalVector &force,
+                              NodalVector &scratch);
 } // namespace ACF
 
 #endif

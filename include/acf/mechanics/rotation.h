@@ -27,6 +27,15 @@ namespace ACF
    * For a variation $\delta F$ of the deformation gradient the rotation varies
    * by $\delta R = R\, [\delta\omega]_\times$ with
    * $\delta\omega_i = \Lambda_{ijk} H_{jk}$, $H = R^T \delta F$.
+   *
+   * $\Lambda$ gives the second derivative, too. Both measures make linear
+   * components of $R^T F$ vanish, and $\Lambda$ reads no others, so that for
+   * $F + \varepsilon R H$ the rotation is
+   * $R \exp([\varepsilon \varphi' + \frac12 \varepsilon^2 \varphi'']_\times)
+   * + O(\varepsilon^3)$ with
+   * \f[ \varphi'_i = \Lambda_{ijk} H_{jk}, \quad
+   *     \varphi''_i = \Lambda_{ijk} S_{jk}, \quad
+   *     S = [\varphi']_\times ([\varphi']_\times R^T F - 2 H). \f]
    */
   struct BodyRotation
   {
