@@ -10,16 +10,14 @@ namespace ACF
 {
   namespace
   {
-    // Declares "Names" and one subsection per object.
+    // Declares "Names" and one subsection per object in the current section.
     template <typename Parameters>
     void
-    declare_named(ParameterHandler &prm,
-                  const std::string &section,
-                  const std::string &documentation,
-                  const std::vector<std::string> &names,
-                  std::vector<Parameters> &objects)
+    declare_objects(ParameterHandler &prm,
+                    const std::string &documentation,
+                    const std::vector<std::string> &names,
+                    std::vector<Parameters> &objects)
     {
-      prm.enter_subsection(section);
       std::string list;
       for (const std::string &name : names)
         list += (list.empty() ? "" : ", ") + name;
@@ -37,17 +35,49 @@ namespace ACF
           objects[k].add_parameters(prm);
           prm.leave_subsection();
         }
+    }
+
+
+
+    template <typename Parameters>
+    void
+    declare_named(ParameterHandler &prm,
+                  const std::string &section,
+                  const std::string &documentation,
+                  const std::vector<std::string> &names,
+                  std::vector<Parameters> &objects)
+    {
+      prm.enter_subsection(section);
+      declare_objects(prm, documentation, names, objects);
       prm.leave_subsection();
     }
 
 
 
+    template <typename Parameters>
     void
-    declare_model(ParameterHandler &prm,
-                  Model &model,
-                  const std::vector<std::string> &bodies,
-                  const std::vector<std::string> &joints,
-                  const std::vector<std::string> &probes)
+    declare_section(ParameterHandler &prm,
+                    const std::string &section,
+                    Parameters &parameters)
+    {
+      prm.enter_subsection(section);
+      parameters.add_parameters(prm);
+      prm.leave_subsection();
+    }
+
+
+
+    // Names of the objects of the sections that have any.
+    struct Names
+    {
+      std::vector<std::string> bodies, joints, force_elements, masses, loads,
+        probes;
+    };
+
+
+
+    void
+    declare_model(ParameterHandler &prm, Model &model, const Names &names)
     {
       prm.add_parameter("Title",
                         model.title,
@@ -55,28 +85,69 @@ namespace ACF
       declare_named(prm,
                     "Bodies",
                     "Names of the bodies; each has a subsection.",
-                    bodies,
-                    model.bodies);
+                    names.bodies,
+                    model.system.bodies);
       declare_named(prm,
                     "Joints",
                     "Names of the joints; each has a subsection.",
-                    joints,
-                    model.joints);
+                    names.joints,
+                    model.system.joints);
+      declare_named(prm,
+                    "Force elements",
+                    "Names of springs, dampers and bushings; each has a "
+                    "subsection.",
+                    names.force_elements,
+                    model.system.force_elements);
+      declare_named(prm,
+                    "Masses",
+                    "Names of rigid masses on surfaces; each has a subsection.",
+                    names.masses,
+                    model.system.masses);
       prm.enter_subsection("Loads");
-      model.loads.add_parameters(prm);
+      model.system.loads.add_parameters(prm);
+      declare_objects(prm,
+                      "Names of loads on surfaces; each has a subsection.",
+                      names.loads,
+                      model.system.surface_loads);
       prm.leave_subsection();
-      prm.enter_subsection("Time integration");
-      model.time.add_parameters(prm);
-      prm.leave_subsection();
-      prm.enter_subsection("Output");
-      model.output.add_parameters(prm);
-      prm.leave_subsection();
+      declare_section(prm, "Start", model.start);
+      declare_section(prm, "Time integration", model.time);
+      declare_section(prm, "Modes", model.modes);
+      declare_section(prm, "Output", model.output);
       declare_named(prm,
                     "Probes",
                     "Names of the probes; each has a subsection.",
-                    probes,
+                    names.probes,
                     model.probes);
     }
+
+
+
+    void
+    check_model(const Model &model)
+    {
+      if (model.system.bodies.empty())
+        throw InputError("Bodies", "Names", "nothing", "at least one name");
+      const auto check_all = [](const auto &objects) {
+        for (const auto &object : objects)
+          object.check();
+      };
+      check_all(model.system.bodies);
+      check_all(model.system.joints);
+      check_all(model.system.force_elements);
+      check_all(model.system.masses);
+      check_all(model.system.surface_loads);
+      model.start.check();
+      // an End time of zero: nothing but the equilibrium or modes
+      const bool may_be_static =
+        model.start.equilibrium || model.modes.number > 0;
+      if (!(may_be_static && model.time.end_time == 0))
+        model.time.check();
+      check_all(model.probes);
+    }
+
+
+
     // What depends on where the model file lies, so that the record of the
     // parameters means the same elsewhere.
     void
@@ -87,7 +158,7 @@ namespace ACF
       prm.leave_subsection();
 
       prm.enter_subsection("Bodies");
-      for (BodyParameters &body : model.bodies)
+      for (BodyParameters &body : model.system.bodies)
         if (mesh_file_kind(body.mesh.mesh) != MeshFileKind::unknown)
           {
             const std::string name = body.mesh.mesh;
@@ -129,21 +200,16 @@ namespace ACF
     ParameterHandler prm;
     declare_model(prm,
                   model,
-                  file.names("Bodies"),
-                  file.names("Joints"),
-                  file.names("Probes"));
+                  {file.names("Bodies"),
+                   file.names("Joints"),
+                   file.names("Force elements"),
+                   file.names("Masses"),
+                   file.names("Loads"),
+                   file.names("Probes")});
     file.parse(prm);
     try
       {
-        if (model.bodies.empty())
-          throw InputError("Bodies", "Names", "nothing", "at least one name");
-        for (const BodyParameters &body : model.bodies)
-          body.check();
-        for (const JointParameters &joint : model.joints)
-          joint.check();
-        model.time.check();
-        for (const ProbeParameters &probe : model.probes)
-          probe.check();
+        check_model(model);
       }
     catch (const InputError &error)
       {
@@ -165,7 +231,10 @@ namespace ACF
   {
     Model model;
     ParameterHandler prm;
-    declare_model(prm, model, {"body"}, {"joint"}, {"probe"});
+    declare_model(
+      prm,
+      model,
+      {{"body"}, {"joint"}, {"spring"}, {"mass"}, {"load"}, {"probe"}});
     return documented_parameters(prm);
   }
 } // namespace ACF

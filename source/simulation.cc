@@ -3,6 +3,7 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
+#include <acf/io/mode_output.h>
 #include <acf/io/probes.h>
 #include <acf/io/vtu_output.h>
 #include <acf/model.h>
@@ -15,9 +16,11 @@
 
 #include <mpi.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <ostream>
+#include <sstream>
 
 extern "C" void
 openblas_set_num_threads(int n_threads);
@@ -164,7 +167,8 @@ namespace ACF
              << "Time: assembly " << format_duration(time("assembly"))
              << ", factorisation " << format_duration(time("factorisation"))
              << ", time steps "
-             << format_duration(time("time steps") - time("factorisation"))
+             << format_duration(
+                  std::max(0., time("time steps") - time("factorisation")))
              << " (solves " << format_duration(time("solves")) << "), output "
              << format_duration(time("output")) << "; peak memory "
              << format_bytes(peak_memory()) << std::endl;
@@ -179,24 +183,31 @@ namespace ACF
                   const bool finished)
   {
     nlohmann::ordered_json json;
-    json["version"]               = ACF_VERSION;
-    json["finished"]              = finished;
-    json["steps"]                 = statistics.steps;
-    json["rejected steps"]        = statistics.rejected_steps;
-    json["halvings"]              = statistics.halvings;
-    json["newton iterations"]     = statistics.newton_iterations;
-    json["newton iterations max"] = statistics.max_newton_iterations;
-    json["factorisations"]        = {{"real", statistics.real_factorizations},
-                                     {"complex", statistics.complex_factorizations}};
-    json["solves"]                = {{"real", statistics.real_solves},
-                                     {"complex", statistics.complex_solves},
-                                     {"setup", statistics.setup_solves}};
-    json["force evaluations"]     = statistics.force_evaluations;
-    json["schur complements"]     = statistics.schur_complements;
-    json["stress evaluations"]    = statistics.stress_evaluations;
-    json["vtu files"]             = statistics.vtu_files;
-    json["probe rows"]            = statistics.probe_rows;
-    json["constraints"]           = system.n_constraints();
+    json["version"]                = ACF_VERSION;
+    json["finished"]               = finished;
+    json["steps"]                  = statistics.steps;
+    json["rejected steps"]         = statistics.rejected_steps;
+    json["halvings"]               = statistics.halvings;
+    json["newton iterations"]      = statistics.newton_iterations;
+    json["newton iterations max"]  = statistics.max_newton_iterations;
+    json["equilibrium iterations"] = statistics.equilibrium_iterations;
+    json["factorisations"]         = {{"real", statistics.real_factorizations},
+                                      {"complex", statistics.complex_factorizations}};
+    json["solves"]                 = {{"real", statistics.real_solves},
+                                      {"complex", statistics.complex_solves},
+                                      {"setup", statistics.setup_solves}};
+    json["force evaluations"]      = statistics.force_evaluations;
+    json["marker factorisations"]  = statistics.marker_factorizations;
+    json["constraint corrections"] = statistics.constraint_corrections;
+    json["stress evaluations"]     = statistics.stress_evaluations;
+    json["vtu files"]              = statistics.vtu_files;
+    json["probe rows"]             = statistics.probe_rows;
+    json["constraints"]            = system.n_constraints();
+    json["repeated constraints"]   = system.n_repeated_constraints();
+    json["constraint residual"]    = {
+         {"positions [m or rad]", statistics.constraint_residual},
+         {"velocities [m/s or rad/s]", statistics.constraint_velocity_residual}};
+    json["different bodies"] = system.n_reference_bodies();
     for (const Body &body : system.bodies())
       json["bodies"][body.name()] = {
         {"cells",
@@ -218,6 +229,100 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // With a factorisation of its own only if something must be projected.
+    SystemState
+    start_state(const MultibodySystem &system,
+                const Model &model,
+                Statistics &statistics,
+                std::ostream &log)
+    {
+      const PhaseTimer timer(statistics, "start");
+      FactorizationCache cache(statistics);
+      return initial_state(
+        system, model.start, model.time.step_size, cache, statistics, log);
+    }
+
+
+
+    // Keeps the state at the end of the simulation.
+    class LastState : public Observer
+    {
+    public:
+      LastState()
+        : Observer(0)
+      {}
+
+      void
+      observe(const SystemState &state) override
+      {
+        last = state;
+      }
+
+      SystemState last;
+    };
+
+
+
+    void
+    find_modes(const MultibodySystem &system,
+               const SystemState &state,
+               const unsigned int number,
+               const std::filesystem::path &directory,
+               Statistics &statistics,
+               std::ostream &log)
+    {
+      const PhaseTimer timer(statistics, "modes");
+      const NaturalModes modes =
+        natural_modes(system, state, number, statistics);
+      write_modes(system, state, modes, directory, statistics);
+      describe_modes(state, modes, log);
+    }
+
+
+
+    // Modes about the start, the simulation if there is one, and modes about
+    // its end.
+    void
+    run_phases(const MultibodySystem &system,
+               const SystemState &state,
+               const Model &model,
+               std::vector<Observer *> observers,
+               const std::filesystem::path &directory,
+               Statistics &statistics,
+               std::ostream &stream,
+               const bool quiet)
+    {
+      std::ostringstream nowhere;
+      std::ostream &log      = quiet ? nowhere : stream;
+      const auto modes_about = [&](const SystemState &about) {
+        find_modes(
+          system, about, model.modes.number, directory, statistics, log);
+      };
+      if (model.modes.number > 0 && !model.modes.at_end)
+        modes_about(state);
+      LastState end;
+      if (model.modes.number > 0 && model.modes.at_end)
+        observers.push_back(&end);
+      if (model.time.end_time > 0)
+        {
+          Progress progress(stream,
+                            !quiet && standard_output_is_terminal(),
+                            model.time.end_time);
+          run_time_loop(
+            system, state, model.time, observers, progress, statistics);
+        }
+      else
+        for (Observer *const observer : observers)
+          observer->observe(state);
+      if (model.modes.number > 0 && model.modes.at_end)
+        modes_about(end.last);
+    }
+  } // namespace
+
+
+
   void
   run_model(const Model &model,
             const std::filesystem::path &output_directory,
@@ -228,14 +333,16 @@ namespace ACF
     std::unique_ptr<const MultibodySystem> system;
     {
       const PhaseTimer timer(statistics, "assembly");
-      system = std::make_unique<const MultibodySystem>(model.bodies,
-                                                       model.joints,
-                                                       model.loads,
-                                                       model.directory);
+      system =
+        std::make_unique<const MultibodySystem>(model.system, model.directory);
     }
     if (!quiet)
       describe_bodies(*system, stream);
 
+    const MpiSession mpi;
+    std::ostringstream log;
+    const SystemState state =
+      start_state(*system, model, statistics, quiet ? log : stream);
     make_directory(output_directory);
     std::vector<std::unique_ptr<Observer>> observers;
     if (!model.probes.empty())
@@ -250,7 +357,6 @@ namespace ACF
         *system, output_directory, model.output.vtu, statistics));
     write_file(output_directory / "used_parameters.prm", model.used_parameters);
 
-    const MpiSession mpi;
     const auto write_statistics = [&](const bool finished) {
       write_file(output_directory / "statistics.json",
                  statistics_json(statistics, *system, finished));
@@ -260,10 +366,14 @@ namespace ACF
         std::vector<Observer *> pointers;
         for (const auto &observer : observers)
           pointers.push_back(observer.get());
-        Progress progress(stream,
-                          !quiet && standard_output_is_terminal(),
-                          model.time.end_time);
-        run_time_loop(*system, model.time, pointers, progress, statistics);
+        run_phases(*system,
+                   state,
+                   model,
+                   pointers,
+                   output_directory,
+                   statistics,
+                   stream,
+                   quiet);
       }
     catch (...)
       {
@@ -317,10 +427,7 @@ namespace ACF
           }
         else
           {
-            const MultibodySystem system(model.bodies,
-                                         model.joints,
-                                         model.loads,
-                                         model.directory);
+            const MultibodySystem system(model.system, model.directory);
             for (const ProbeParameters &probe : model.probes)
               make_probe(probe, system);
             if (!command_line.quiet)

@@ -7,6 +7,8 @@
 #include <acf/base/parameter_file.h>
 #include <acf/io/probes.h>
 #include <acf/io/vtu_output.h>
+#include <acf/time/modes.h>
+#include <acf/time/start.h>
 
 namespace ACF
 {
@@ -31,10 +33,10 @@ namespace ACF
   struct Model
   {
     std::string title;
-    std::vector<BodyParameters> bodies;
-    std::vector<JointParameters> joints;
-    LoadParameters loads;
+    SystemParameters system;
+    StartParameters start;
     TimeParameters time;
+    ModeParameters modes;
     OutputParameters output;
     std::vector<ProbeParameters> probes;
 

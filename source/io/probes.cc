@@ -2,133 +2,37 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
-#include <acf/io/probes.h>
+#include <acf/io/probe_types.h>
 
-#include <deal.II/base/numbers.h>
 #include <deal.II/base/parameter_handler.h>
 
+#include <algorithm>
 #include <array>
 #include <charconv>
-#include <cmath>
 
 namespace ACF
 {
+  std::vector<double>
+  components(const Vector3 &v)
+  {
+    return {v[0], v[1], v[2]};
+  }
+
+
+
+  std::vector<std::string>
+  vector_columns(const std::string &unit, const std::string &prefix)
+  {
+    std::vector<std::string> names;
+    for (const char axis : {'x', 'y', 'z'})
+      names.push_back(prefix + axis + " [" + unit + "]");
+    return names;
+  }
+
+
+
   namespace
   {
-    std::vector<double>
-    components(const Vector3 &v)
-    {
-      return {v[0], v[1], v[2]};
-    }
-
-
-
-    std::vector<std::string>
-    vector_columns(const std::string &unit, const std::string &prefix = "")
-    {
-      std::vector<std::string> names;
-      for (const char axis : {'x', 'y', 'z'})
-        names.push_back(prefix + axis + " [" + unit + "]");
-      return names;
-    }
-
-
-
-    // Mean of a surface, or a material point: its position or its velocity.
-    class FunctionalProbe : public Probe
-    {
-    public:
-      FunctionalProbe(const unsigned int body,
-                      const NodalFunctional &functional,
-                      const bool velocity)
-        : body(body)
-        , functional(functional)
-        , velocity(velocity)
-      {}
-
-      std::vector<std::string>
-      columns() const override
-      {
-        return vector_columns(velocity ? "m/s" : "m");
-      }
-
-      std::vector<double>
-      evaluate(const SystemState &state) override
-      {
-        return components(functional(velocity ? state.velocities[body]
-                                              : state.positions[body]));
-      }
-
-    private:
-      const unsigned int body;
-      const NodalFunctional functional;
-      const bool velocity;
-    };
-
-
-
-    // Angle of the line between two surfaces and distance of a material point
-    // from it, in the plane perpendicular to a world axis.
-    class ChordProbe : public Probe
-    {
-    public:
-      struct End
-      {
-        unsigned int body;
-        NodalFunctional functional;
-      };
-
-      ChordProbe(const End &from,
-                 const End &to,
-                 const std::optional<End> &point,
-                 const unsigned int axis)
-        : from(from)
-        , to(to)
-        , point(point)
-        , first((axis + 1) % dim)
-        , second((axis + 2) % dim)
-      {}
-
-      std::vector<std::string>
-      columns() const override
-      {
-        if (point)
-          return {"angle [rad]", "deflection [m]"};
-        return {"angle [rad]"};
-      }
-
-      std::vector<double>
-      evaluate(const SystemState &state) override
-      {
-        const Vector3 start  = from.functional(state.positions[from.body]);
-        const Vector3 chord  = to.functional(state.positions[to.body]) - start;
-        const double wrapped = std::atan2(chord[second], chord[first]);
-        if (n_evaluations++ == 0)
-          angle = wrapped;
-        else // the branch nearest to the angle before
-          angle += std::remainder(wrapped - angle, 2 * numbers::PI);
-
-        if (!point)
-          return {angle};
-        const Vector3 arm =
-          point->functional(state.positions[point->body]) - start;
-        return {angle,
-                std::cos(wrapped) * arm[second] -
-                  std::sin(wrapped) * arm[first]};
-      }
-
-    private:
-      const End from;
-      const End to;
-      const std::optional<End> point;
-      const unsigned int first;
-      const unsigned int second;
-      unsigned long n_evaluations = 0;
-      double angle                = 0;
-    };
-
-
-
     // Energies or momenta of the whole system.
     class SystemProbe : public Probe
     {
@@ -165,98 +69,64 @@ namespace ACF
 
 
 
-    class ReactionProbe : public Probe
+    // Some components of a vector.
+    class SelectedProbe : public Probe
     {
     public:
-      ReactionProbe(const MultibodySystem &system, const unsigned int joint)
-        : system(system)
-        , joint(joint)
-      {}
+      SelectedProbe(std::unique_ptr<Probe> probe,
+                    const std::vector<std::string> &selected)
+        : probe(std::move(probe))
+      {
+        const auto names = this->probe->columns();
+        for (unsigned int k = 0; k < names.size(); ++k)
+          {
+            const std::string letter =
+              names[k].substr(names[k].find(" [") - 1, 1);
+            if (std::find(selected.begin(), selected.end(), letter) !=
+                selected.end())
+              indices.push_back(k);
+          }
+      }
 
       std::vector<std::string>
       columns() const override
       {
-        auto names        = vector_columns("N", "force ");
-        const auto moment = vector_columns("N m", "moment ");
-        names.insert(names.end(), moment.begin(), moment.end());
-        return names;
+        return select(probe->columns());
       }
 
       std::vector<double>
       evaluate(const SystemState &state) override
       {
-        const auto reaction = system.reaction(joint, state);
-        auto values         = components(reaction.force);
-        const auto moment   = components(reaction.moment);
-        values.insert(values.end(), moment.begin(), moment.end());
-        return values;
+        return select(probe->evaluate(state));
       }
 
     private:
-      const MultibodySystem &system;
-      const unsigned int joint;
+      template <typename T>
+      std::vector<T>
+      select(const std::vector<T> &all) const
+      {
+        std::vector<T> some;
+        for (const unsigned int k : indices)
+          some.push_back(all[k]);
+        return some;
+      }
+
+      std::unique_ptr<Probe> probe;
+      std::vector<unsigned int> indices;
     };
 
 
 
-    ChordProbe::End
-    surface_end(const MultibodySystem &system,
-                const ProbeParameters &parameters,
-                const std::string &text,
-                const std::string &entry)
+    std::unique_ptr<Probe>
+    make_whole_probe(const ProbeParameters &parameters,
+                     const MultibodySystem &system)
     {
-      const SurfaceName name =
-        parse_surface_name(text, parameters.section(), entry);
-      const unsigned int b =
-        find_body(system.bodies(), name.body, parameters.section(), entry);
-      const BodyDiscretization &body = system.bodies()[b].discretization();
-      return {b,
-              surface_mean(body,
-                           body.mesh().surface(name.surface,
-                                               parameters.section(),
-                                               entry))};
-    }
-
-
-
-    NodalFunctional
-    point_functional(const Body &body, const ProbeParameters &parameters)
-    {
-      try
-        {
-          return material_point(body.discretization(),
-                                Point<dim>(parameters.point[0],
-                                           parameters.point[1],
-                                           parameters.point[2]));
-        }
-      catch (const SimulationError &error)
-        {
-          throw InputError(parameters.section(),
-                           "Point",
-                           error.what(),
-                           "a point of the body '" + body.name() +
-                             "' in the coordinates of its mesh");
-        }
-    }
-
-
-
-    unsigned int
-    find_joint(const MultibodySystem &system, const ProbeParameters &parameters)
-    {
-      std::string names;
-      for (unsigned int j = 0; j < system.joints().size(); ++j)
-        {
-          if (system.joints()[j].name == parameters.of)
-            return j;
-          names += (j > 0 ? ", " : "") + system.joints()[j].name;
-        }
-      throw InputError(parameters.section(),
-                       "Of",
-                       "the joint '" + parameters.of +
-                         "', which does not exist",
-                       names.empty() ? "nothing, as there are no joints"
-                                     : names);
+      const std::string &type = parameters.type;
+      if (type == "reaction" || type.rfind("joint", 0) == 0)
+        return make_joint_probe(parameters, system);
+      if (type == "energy" || type == "momentum" || type == "angular momentum")
+        return std::make_unique<SystemProbe>(system, type);
+      return make_body_probe(parameters, system);
     }
   } // namespace
 
@@ -271,16 +141,24 @@ namespace ACF
       "What is measured: 'mean position' or 'mean velocity' of a surface; "
       "'point position' or 'point velocity' of a material point; 'chord', the "
       "angle of the line between two surfaces and the distance of a material "
-      "point from it; 'energy' (kinetic, elastic, potential), 'momentum' or "
+      "point from it; 'chord frame', the change of length of that line and the "
+      "displacement of the point along it, across it (along Axis x line) and "
+      "normal to both; 'energy' (kinetic, elastic, potential), 'momentum' or "
       "'angular momentum' (about the origin) of all bodies; 'reaction', the "
-      "force and the moment of a joint on its body. Units: none.",
+      "force and the moment of a joint on its first side that is a body; "
+      "'joint angle', the angle of the first side relative to the second about "
+      "the joint's z axis and its rate; 'joint displacement' and 'joint "
+      "rotation' (small angles), relative motion of the first side in the "
+      "joint's axes, which turn with the second side. Units: none.",
       Patterns::Selection("mean position|mean velocity|point position|point "
-                          "velocity|chord|energy|momentum|angular "
-                          "momentum|reaction"));
+                          "velocity|chord|chord frame|energy|momentum|angular "
+                          "momentum|reaction|joint angle|joint "
+                          "displacement|joint rotation"));
     prm.add_parameter("Of",
                       of,
                       "What the probe belongs to: 'BODY: SURFACE' for a mean, "
-                      "'BODY' for a point, the name of a joint for a reaction. "
+                      "'BODY' for a point, the name of a joint for a reaction "
+                      "or a joint's motion. "
                       "Units: none.");
     prm.add_parameter("From",
                       from,
@@ -301,6 +179,20 @@ namespace ACF
                       "atan2(dx, dz), about z atan2(dy, dx), continued beyond "
                       "a half turn. Units: none.",
                       Patterns::Selection("x|y|z"));
+    prm.add_parameter("Components",
+                      selected,
+                      "Which components of a vector are written: some of x, y, "
+                      "z separated by ','; all if nothing is given. "
+                      "Units: none.",
+                      Patterns::List(Patterns::Selection("x|y|z"), 0, dim));
+    prm.declare_entry("Axes",
+                      "world",
+                      Patterns::Selection("world|joint"),
+                      "Axes of a reaction: those of the world, or of the joint "
+                      "(turning with its second side). Units: none.");
+    prm.add_action("Axes", [this](const std::string &value) {
+      in_joint_axes = (value == "joint");
+    });
   }
 
 
@@ -308,10 +200,10 @@ namespace ACF
   void
   ProbeParameters::check() const
   {
-    const bool is_chord = (type == "chord");
+    const bool is_chord = (type.rfind("chord", 0) == 0);
     const bool is_point = (type.rfind("point", 0) == 0);
-    const bool has_subject =
-      is_point || type.rfind("mean", 0) == 0 || type == "reaction";
+    const bool is_joint = (type == "reaction" || type.rfind("joint", 0) == 0);
+    const bool has_subject = is_point || type.rfind("mean", 0) == 0 || is_joint;
 
     const auto check_entry = [&](const std::string &entry,
                                  const bool given,
@@ -331,7 +223,15 @@ namespace ACF
     check_entry("Of", !of.empty(), has_subject, has_subject);
     check_entry("From", !from.empty(), is_chord, is_chord);
     check_entry("To", !to.empty(), is_chord, is_chord);
-    check_entry("Point", !point.empty(), is_point, is_point || is_chord);
+    check_entry("Point",
+                !point.empty(),
+                is_point || type == "chord frame",
+                is_point || is_chord);
+    check_entry("Components",
+                !selected.empty(),
+                false,
+                !is_chord && type != "energy" && type != "joint angle");
+    check_entry("Axes", in_joint_axes, false, type == "reaction");
     if (!point.empty() && point.size() != dim)
       throw InputError(section(),
                        "Point",
@@ -344,42 +244,11 @@ namespace ACF
   std::unique_ptr<Probe>
   make_probe(const ProbeParameters &parameters, const MultibodySystem &system)
   {
-    const std::string &type = parameters.type;
-    const bool velocity     = type.find("velocity") != std::string::npos;
-
-    if (type == "mean position" || type == "mean velocity")
-      {
-        const auto end = surface_end(system, parameters, parameters.of, "Of");
-        return std::make_unique<FunctionalProbe>(end.body,
-                                                 end.functional,
-                                                 velocity);
-      }
-    if (type == "point position" || type == "point velocity")
-      {
-        const unsigned int b =
-          find_body(system.bodies(), parameters.of, parameters.section(), "Of");
-        return std::make_unique<FunctionalProbe>(
-          b, point_functional(system.bodies()[b], parameters), velocity);
-      }
-    if (type == "chord")
-      {
-        const auto from =
-          surface_end(system, parameters, parameters.from, "From");
-        const auto to = surface_end(system, parameters, parameters.to, "To");
-        std::optional<ChordProbe::End> point;
-        if (!parameters.point.empty())
-          point = ChordProbe::End{from.body,
-                                  point_functional(system.bodies()[from.body],
-                                                   parameters)};
-        return std::make_unique<ChordProbe>(from,
-                                            to,
-                                            point,
-                                            parameters.axis[0] - 'x');
-      }
-    if (type == "reaction")
-      return std::make_unique<ReactionProbe>(system,
-                                             find_joint(system, parameters));
-    return std::make_unique<SystemProbe>(system, type);
+    auto probe = make_whole_probe(parameters, system);
+    if (parameters.selected.empty())
+      return probe;
+    return std::make_unique<SelectedProbe>(std::move(probe),
+                                           parameters.selected);
   }
 
 

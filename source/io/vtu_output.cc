@@ -300,63 +300,24 @@ namespace ACF
 
 
 
-  VtuOutput::VtuOutput(const MultibodySystem &system,
-                       const std::filesystem::path &directory,
-                       const VtuParameters &parameters,
-                       Statistics &statistics)
-    : Observer(parameters.interval)
-    , system(system)
+  VtuWriter::VtuWriter(const MultibodySystem &system,
+                       const SystemVector &points,
+                       const std::filesystem::path &directory)
+    : system(system)
     , directory(directory)
-    , stress(parameters.stress)
-    , statistics(statistics)
   {
-    Assert(parameters.interval > 0,
-           ExcMessage("Without an interval there are no VTU files."));
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      {
-        const Body &body = system.bodies()[b];
-        initial_positions.push_back(body.initial_positions());
-        geometries.push_back(
-          geometry(body.discretization(), initial_positions.back(), b));
-      }
-  }
-
-
-
-  std::string
-  VtuOutput::piece(const unsigned int b, const SystemState &state) const
-  {
-    const Body &body         = system.bodies()[b];
-    NodalVector displacement = state.positions[b];
-    displacement -= initial_positions[b];
-
-    std::string fields =
-      data_array<double>("displacement", dim, displacement) +
-      data_array<float>("velocity", dim, state.velocities[b]);
-    if (stress)
-      {
-        const auto values = von_mises_stress(body, state.positions[b]);
-        if (!values)
-          throw SimulationError("The body '" + body.name() + "' at time " +
-                                format_number(state.time) +
-                                " s is so deformed that it has no rotation; "
-                                "its stress cannot be evaluated.");
-        fields += data_array<float>("von_mises_stress", 1, *values);
-      }
-
-    return "<Piece NumberOfPoints=\"" +
-           std::to_string(body.discretization().n_nodes()) +
-           "\" NumberOfCells=\"" +
-           std::to_string(
-             body.discretization().mesh().triangulation().n_active_cells()) +
-           "\">\n<PointData Vectors=\"displacement\">\n" + fields +
-           "</PointData>\n" + geometries[b] + "</Piece>\n";
+      geometries.push_back(
+        geometry(system.bodies()[b].discretization(), points[b], b));
   }
 
 
 
   void
-  VtuOutput::observe(const SystemState &state)
+  VtuWriter::write(const std::string &name,
+                   const std::vector<VtuField> &fields,
+                   const double time,
+                   const std::string &list)
   {
     // version 2.2 stands for today's order of the nodes of Lagrange cells
     std::string content =
@@ -364,20 +325,94 @@ namespace ACF
       "version=\"2.2\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
       "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      content += piece(b, state);
+      {
+        const BodyDiscretization &body = system.bodies()[b].discretization();
+        content +=
+          "<Piece NumberOfPoints=\"" + std::to_string(body.n_nodes()) +
+          "\" NumberOfCells=\"" +
+          std::to_string(body.mesh().triangulation().n_active_cells()) +
+          "\">\n<PointData Vectors=\"" + fields[0].name + "\">\n";
+        for (const VtuField &field : fields)
+          content +=
+            field.double_precision
+              ? data_array(field.name, field.n_components, field.values[b])
+              : data_array<float>(field.name,
+                                  field.n_components,
+                                  field.values[b]);
+        content += "</PointData>\n" + geometries[b] + "</Piece>\n";
+      }
     content += "</UnstructuredGrid>\n</VTKFile>\n";
-    if (stress)
-      statistics.stress_evaluations += system.bodies().size();
+    write_file(directory / (name + ".vtu"), content);
 
-    const std::string name =
-      "solution-" + Utilities::int_to_string(times_and_names.size(), 6) +
-      ".vtu";
-    write_file(directory / name, content);
-    ++statistics.vtu_files;
-
-    times_and_names.emplace_back(state.time, name);
+    times_and_names.emplace_back(time, name + ".vtu");
     std::ostringstream record;
     DataOutBase::write_pvd_record(record, times_and_names);
-    write_file(directory / "solution.pvd", record.str());
+    write_file(directory / list, record.str());
+  }
+
+
+
+  namespace
+  {
+    SystemVector
+    positions_of_model(const MultibodySystem &system)
+    {
+      SystemVector positions;
+      for (const Body &body : system.bodies())
+        positions.push_back(body.initial_positions());
+      return positions;
+    }
+  } // namespace
+
+
+
+  VtuOutput::VtuOutput(const MultibodySystem &system,
+                       const std::filesystem::path &directory,
+                       const VtuParameters &parameters,
+                       Statistics &statistics)
+    : Observer(parameters.interval)
+    , system(system)
+    , stress(parameters.stress)
+    , statistics(statistics)
+    , initial_positions(positions_of_model(system))
+    , writer(system, initial_positions, directory)
+  {
+    Assert(parameters.interval > 0,
+           ExcMessage("Without an interval there are no VTU files."));
+  }
+
+
+
+  void
+  VtuOutput::observe(const SystemState &state)
+  {
+    std::vector<VtuField> fields = {{"displacement", dim, true, {}},
+                                    {"velocity", dim, false, {}}};
+    if (stress)
+      fields.push_back({"von_mises_stress", 1, false, {}});
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        NodalVector displacement = state.positions[b];
+        displacement -= initial_positions[b];
+        fields[0].values.emplace_back(displacement.begin(), displacement.end());
+        fields[1].values.emplace_back(state.velocities[b].begin(),
+                                      state.velocities[b].end());
+        if (!stress)
+          continue;
+        const Body &body = system.bodies()[b];
+        auto values      = von_mises_stress(body, state.positions[b]);
+        if (!values)
+          throw SimulationError("The body '" + body.name() + "' at time " +
+                                format_number(state.time) +
+                                " s is so deformed that it has no rotation; "
+                                "its stress cannot be evaluated.");
+        fields[2].values.push_back(std::move(*values));
+        ++statistics.stress_evaluations;
+      }
+    writer.write("solution-" + Utilities::int_to_string(n_files++, 6),
+                 fields,
+                 state.time,
+                 "solution.pvd");
+    ++statistics.vtu_files;
   }
 } // namespace ACF

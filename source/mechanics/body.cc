@@ -4,8 +4,6 @@
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/body.h>
-#include <acf/mechanics/mesh_import.h>
-#include <acf/mechanics/reduced_strain.h>
 
 #include <deal.II/base/parameter_handler.h>
 
@@ -57,6 +55,28 @@ namespace ACF
                       angular_velocity,
                       "Angular velocity of the body at the start, in world "
                       "axes. Units: rad/s.");
+    prm.add_parameter("Displacement field",
+                      displacement_field,
+                      "Displacement at the start in the axes of the mesh, "
+                      "three expressions of its coordinates x, y, z separated "
+                      "by ';'; zero if nothing is given. Units: m.");
+    prm.add_parameter("Velocity field",
+                      velocity_field,
+                      "Velocity at the start in the axes of the mesh, added to "
+                      "the rigid motion: three expressions of the mesh's "
+                      "coordinates x, y, z separated by ';'; zero if nothing "
+                      "is given. Units: m/s.");
+    prm.add_parameter("Mass damping",
+                      mass_damping,
+                      "Rayleigh damping of the deformation proportional to the "
+                      "mass, in the rotating frame: rigid motions are not "
+                      "damped. Units: 1/s.",
+                      Patterns::Double(0));
+    prm.add_parameter("Stiffness damping",
+                      stiffness_damping,
+                      "Rayleigh damping of the deformation proportional to the "
+                      "stiffness, in the rotating frame. Units: s.",
+                      Patterns::Double(0));
   }
 
 
@@ -85,20 +105,106 @@ namespace ACF
 
 
 
+  ReferenceBody::ReferenceBody(const BodyParameters &parameters,
+                               const std::filesystem::path &directory)
+    : mesh(parameters.mesh)
+    , material(parameters.material)
+    , finite_elements(
+        make_mesh(parameters.mesh, parameters.section(), directory))
+    , constant_operators(
+        assemble_body_operators(finite_elements, parameters.material))
+  {}
+
+
+
+  bool
+  ReferenceBody::fits(const BodyParameters &parameters) const
+  {
+    return parameters.mesh == mesh && parameters.material == material;
+  }
+
+
+
+  unsigned int
+  ReferenceBody::add_functional(const NodalFunctional &functional)
+  {
+    const auto it = std::find_if(marker_functionals.begin(),
+                                 marker_functionals.end(),
+                                 [&](const NodalFunctional &other) {
+                                   return other.is_close(functional);
+                                 });
+    if (it != marker_functionals.end())
+      return it - marker_functionals.begin();
+    marker_functionals.push_back(functional);
+    return marker_functionals.size() - 1;
+  }
+
+
+
+  ReferenceBody::SurfaceIntegrals &
+  ReferenceBody::integrals(const Surface &surface) const
+  {
+    const auto it = surface_integrals.find(surface);
+    if (it != surface_integrals.end())
+      return it->second;
+    SurfaceIntegrals &result = surface_integrals[surface];
+    result.geometry          = surface_geometry(finite_elements, surface);
+    return result;
+  }
+
+
+
+  const SurfaceGeometry &
+  ReferenceBody::geometry(const Surface &surface) const
+  {
+    return integrals(surface).geometry;
+  }
+
+
+
+  const NodalFunctional &
+  ReferenceBody::mean(const Surface &surface) const
+  {
+    auto &mean = integrals(surface).mean;
+    if (!mean)
+      mean = surface_mean(finite_elements, surface);
+    return *mean;
+  }
+
+
+
+  const NodalFunctional &
+  ReferenceBody::director(const Surface &surface,
+                          const Vector3 &direction) const
+  {
+    auto &directors = integrals(surface).directors;
+    for (const auto &[known, functional] : directors)
+      if ((known - direction).norm() < 1e-14)
+        return functional;
+    directors.emplace_back(
+      direction, surface_director(finite_elements, surface, direction));
+    return directors.back().second;
+  }
+
+
+
   Body::Body(const BodyParameters &parameters,
-             const std::filesystem::path &directory)
+             const std::shared_ptr<ReferenceBody> &reference)
     : parameters(parameters)
-    , finite_elements(std::make_shared<const BodyDiscretization>(
-        make_mesh(parameters.mesh, parameters.section(), directory)))
-    , constant_operators(std::make_shared<const BodyOperators>(
-        assemble_body_operators(*finite_elements, parameters.material)))
+    , reference_body(reference)
     , initial_rotation(rotation_matrix(parameters.rotation))
+    , displacement(parameters.displacement_field,
+                   parameters.section(),
+                   "Displacement field")
+    , velocity(parameters.velocity_field,
+               parameters.section(),
+               "Velocity field")
   {}
 
 
 
   NodalVector
-  Body::initial_positions() const
+  Body::placement() const
   {
     const NodalVector &X = operators().reference_positions;
     NodalVector x(X.size());
@@ -115,6 +221,36 @@ namespace ACF
 
 
   NodalVector
+  Body::nodal_field(const VectorField &field) const
+  {
+    const NodalVector &X = operators().reference_positions;
+    NodalVector result(X.size());
+    for (unsigned int a = 0; a < operators().n_nodes; ++a)
+      {
+        Vector3 position;
+        for (unsigned int i = 0; i < dim; ++i)
+          position[i] = X[dim * a + i];
+        const Vector3 value = initial_rotation * field(position);
+        for (unsigned int i = 0; i < dim; ++i)
+          result[dim * a + i] = value[i];
+      }
+    return result;
+  }
+
+
+
+  NodalVector
+  Body::initial_positions() const
+  {
+    NodalVector x = placement();
+    if (!displacement.is_zero())
+      x += nodal_field(displacement);
+    return x;
+  }
+
+
+
+  NodalVector
   Body::initial_velocities() const
   {
     const NodalVector x  = initial_positions();
@@ -125,25 +261,14 @@ namespace ACF
         Vector3 arm;
         for (unsigned int i = 0; i < dim; ++i)
           arm[i] = x[dim * a + i] - centre[i];
-        const Vector3 velocity =
+        const Vector3 rigid =
           parameters.velocity +
           cross_product_3d(parameters.angular_velocity, arm);
         for (unsigned int i = 0; i < dim; ++i)
-          v[dim * a + i] = velocity[i];
+          v[dim * a + i] = rigid[i];
       }
+    if (!velocity.is_zero())
+      v += nodal_field(velocity);
     return v;
-  }
-
-
-
-  unsigned int
-  Body::add_joint_functional(const NodalFunctional &functional)
-  {
-    const auto it =
-      std::find(functionals.begin(), functionals.end(), functional);
-    if (it != functionals.end())
-      return it - functionals.begin();
-    functionals.push_back(functional);
-    return functionals.size() - 1;
   }
 } // namespace ACF

@@ -19,11 +19,11 @@ namespace ACF
 {
   namespace
   {
-    // Calls a function with each quadrature point X, its weight dA, the nodes
-    // of the cell and the values of their shape functions.
+    // Calls a function with each quadrature point X, its weighted normal N dA,
+    // the nodes of the cell and the values of their shape functions.
     using FacePointFunction =
       std::function<void(const Point<dim> &,
-                         const double,
+                         const Vector3 &,
                          const std::vector<unsigned int> &,
                          const std::vector<double> &)>;
 
@@ -38,7 +38,7 @@ namespace ACF
                                element,
                                body.mesh().face_quadrature(4),
                                update_values | update_quadrature_points |
-                                 update_JxW_values);
+                                 update_normal_vectors | update_JxW_values);
       std::vector<unsigned int> nodes(element.n_dofs_per_cell());
       std::vector<double> phi(element.n_dofs_per_cell());
 
@@ -55,7 +55,7 @@ namespace ACF
                   for (unsigned int i = 0; i < phi.size(); ++i)
                     phi[i] = values.shape_value(i, q);
                   function(values.quadrature_point(q),
-                           values.JxW(q),
+                           values.JxW(q) * values.normal_vector(q),
                            nodes,
                            phi);
                 }
@@ -94,12 +94,12 @@ namespace ACF
       for_all_face_points(body,
                           surface,
                           [&](const Point<dim> &X,
-                              const double dA,
+                              const Vector3 &normal,
                               const std::vector<unsigned int> &nodes,
                               const std::vector<double> &phi) {
                             for (unsigned int i = 0; i < nodes.size(); ++i)
                               weights[nodes[i]] +=
-                                weight(X) * phi[i] * dA / area;
+                                weight(X) * phi[i] * normal.norm() / area;
                           });
       return from_map(weights);
     }
@@ -125,6 +125,23 @@ namespace ACF
     for (unsigned int k = 0; k < nodes.size(); ++k)
       for (unsigned int i = 0; i < dim; ++i)
         force[dim * nodes[k] + i] += weights[k] * F[i];
+  }
+
+
+
+  bool
+  NodalFunctional::is_close(const NodalFunctional &other) const
+  {
+    if (nodes != other.nodes)
+      return false;
+    double largest = 0, difference = 0;
+    for (unsigned int k = 0; k < weights.size(); ++k)
+      {
+        largest = std::max(largest, std::abs(weights[k]));
+        difference =
+          std::max(difference, std::abs(weights[k] - other.weights[k]));
+      }
+    return difference <= 1e-12 * largest;
   }
 
 
@@ -191,9 +208,10 @@ namespace ACF
     for_all_face_points(body,
                         surface,
                         [&](const Point<dim> &X,
-                            const double dA,
+                            const Vector3 &normal,
                             const std::vector<unsigned int> &,
                             const std::vector<double> &) {
+                          const double dA = normal.norm();
                           geometry.area += dA;
                           geometry.centroid += dA * X;
                         });
@@ -204,9 +222,10 @@ namespace ACF
     for_all_face_points(body,
                         surface,
                         [&](const Point<dim> &X,
-                            const double dA,
+                            const Vector3 &normal,
                             const std::vector<unsigned int> &,
                             const std::vector<double> &) {
+                          const double dA   = normal.norm();
                           const Vector3 arm = X - Point<dim>(geometry.centroid);
                           geometry.second_moment +=
                             dA / geometry.area * outer_product(arm, arm);
@@ -255,6 +274,26 @@ namespace ACF
     return surface_moment(body,
                           surface,
                           geometry.solve_second_moment(direction));
+  }
+
+
+
+  std::map<unsigned int, Vector3>
+  surface_normals(const BodyDiscretization &body,
+                  const std::set<types::boundary_id> &surface)
+  {
+    std::map<unsigned int, Vector3> result;
+    for_all_face_points(body,
+                        surface,
+                        [&](const Point<dim> &,
+                            const Vector3 &normal,
+                            const std::vector<unsigned int> &nodes,
+                            const std::vector<double> &phi) {
+                          for (unsigned int i = 0; i < nodes.size(); ++i)
+                            if (phi[i] != 0)
+                              result[nodes[i]] += phi[i] * normal;
+                        });
+    return result;
   }
 
 

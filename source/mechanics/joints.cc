@@ -1,430 +1,567 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/joints.h>
 
-#include <deal.II/base/parameter_handler.h>
+#include <deal.II/base/numbers.h>
 #include <deal.II/base/utilities.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace ACF
 {
+  void
+  Drive::add_motion(const double c, const TimeFunction &motion)
+  {
+    motions.emplace_back(c, motion);
+  }
+
+
+
+  void
+  Drive::add_rate(const double c, const TimeFunction &rate)
+  {
+    rates.emplace_back(c, rate);
+    integrals.emplace_back(c, TimeIntegral(rate, 1e-3));
+  }
+
+
+
+  double
+  Drive::value(const double t) const
+  {
+    double sum = 0;
+    for (const auto &[c, motion] : motions)
+      sum += c * motion(t);
+    for (const auto &[c, integral] : integrals)
+      sum += c * integral(t);
+    return sum;
+  }
+
+
+
+  double
+  Drive::rate(const double t) const
+  {
+    double sum = 0;
+    for (const auto &[c, motion] : motions)
+      sum += c * motion.derivative(t);
+    for (const auto &[c, rate] : rates)
+      sum += c * rate(t);
+    return sum;
+  }
+
+
+
+  bool
+  Joint::is_affine() const
+  {
+    return std::all_of(rows.begin(), rows.end(), [](const Row &row) {
+      return row.function.is_affine();
+    });
+  }
+
+
+
+  Eigen::VectorXd
+  Joint::residual(const double t, const Eigen::VectorXd &s) const
+  {
+    Eigen::VectorXd result(rows.size());
+    for (unsigned int r = 0; r < rows.size(); ++r)
+      {
+        result(r) =
+          rows[r].function.value(s) - rows[r].offset - rows[r].drive.value(t);
+        if (rows[r].function.is_angle())
+          result(r) = std::remainder(result(r), 2 * numbers::PI);
+      }
+    return result;
+  }
+
+
+
+  Eigen::MatrixXd
+  Joint::jacobian(const Eigen::VectorXd &s) const
+  {
+    Eigen::MatrixXd result(rows.size(), s.size());
+    for (unsigned int r = 0; r < rows.size(); ++r)
+      result.row(r) = rows[r].function.gradient(s).transpose();
+    return result;
+  }
+
+
+
+  Eigen::VectorXd
+  Joint::drive_rates(const double t) const
+  {
+    Eigen::VectorXd result(rows.size());
+    for (unsigned int r = 0; r < rows.size(); ++r)
+      result(r) = rows[r].drive.rate(t);
+    return result;
+  }
+
+
+
+  Eigen::MatrixXd
+  Joint::geometric_stiffness(const Eigen::VectorXd &s,
+                             const Eigen::VectorXd &multipliers) const
+  {
+    Eigen::MatrixXd result = Eigen::MatrixXd::Zero(s.size(), s.size());
+    for (unsigned int r = 0; r < rows.size(); ++r)
+      if (!rows[r].function.is_affine() && multipliers(r) != 0)
+        result += multipliers(r) * rows[r].function.hessian(s);
+    return result;
+  }
+
+
+
+  std::array<JointSide, 2>
+  parse_sides(const std::string &text,
+              const std::vector<Body> &bodies,
+              const std::string &section,
+              const std::string &entry)
+  {
+    const auto names = Utilities::split_string_list(text, ',');
+    if (names.size() != 2 || (names[0] == "ground" && names[1] == "ground") ||
+        names[0] == names[1])
+      throw InputError(section,
+                       entry,
+                       text.empty() ? "nothing" : "'" + text + "'",
+                       "two surfaces, 'BODY: SURFACE, BODY: SURFACE', or a "
+                       "surface and the ground, 'BODY: SURFACE, ground'");
+    return {{JointSide(names[0], bodies, section, entry),
+             JointSide(names[1], bodies, section, entry)}};
+  }
+
+
+
+  MarkerExpression
+  relative_position(MarkerSet &markers,
+                    const JointSide &first,
+                    const JointSide &second)
+  {
+    const auto position = [&](const JointSide &side, const JointSide &other) {
+      if (!side.is_ground())
+        return side.position(markers);
+      return MarkerExpression{other.start_position(), {}};
+    };
+    return position(first, second) - position(second, first);
+  }
+
+
+
+  MarkerPolynomial
+  relative_displacement(MarkerSet &markers,
+                        const JointSide &first,
+                        const JointSide &second,
+                        const Vector3 &direction)
+  {
+    MarkerPolynomial result;
+    add_product(result,
+                1,
+                relative_position(markers, first, second),
+                second.direction(markers, direction));
+    return result;
+  }
+
+
+
+  MarkerPolynomial
+  relative_rotation(MarkerSet &markers,
+                    const JointSide &first,
+                    const JointSide &second,
+                    const Vector3 &axis)
+  {
+    // axis . Theta sum_k J_k p_k x d_k with Theta = (tr(J) I - J)^-1 and the
+    // directors d_k along the principal directions p_k of a surface
+    const JointSide &weighted = first.is_ground() ? second : first;
+    const JointSide &other    = first.is_ground() ? first : second;
+    const double sign         = first.is_ground() ? -1 : 1;
+
+    auto principal = weighted.principal_directions();
+    if (principal.size() < dim)
+      principal.emplace_back(cross_product_3d(principal[0].first,
+                                              principal[1].first),
+                             0.);
+    double sum = 0;
+    for (const auto &[p, extent] : principal)
+      sum += extent * extent;
+    Vector3 scaled;
+    for (const auto &[p, extent] : principal)
+      scaled += (axis * p) / (sum - extent * extent) * p;
+
+    MarkerPolynomial result;
+    for (const auto &[p, extent] : principal)
+      {
+        const Vector3 arm = cross_product_3d(scaled, p);
+        if (extent > 0 && arm.norm() > 1e-12 * scaled.norm())
+          add_product(result,
+                      sign * extent * extent * arm.norm(),
+                      weighted.direction(markers, p),
+                      other.direction(markers, arm / arm.norm()));
+      }
+    return result;
+  }
+
+
+
+  MarkerFunction
+  relative_angle(MarkerSet &markers,
+                 const JointSide &first,
+                 const JointSide &second,
+                 const Vector3 &axis)
+  {
+    const JointSide &weighted = first.is_ground() ? second : first;
+    const JointSide &other    = first.is_ground() ? first : second;
+    const double sign         = first.is_ground() ? -1 : 1;
+
+    // directions across the axis in which the surface extends
+    std::vector<std::pair<Vector3, double>> across;
+    const auto principal = weighted.principal_directions();
+    for (const auto &[p, extent] : principal)
+      {
+        const Vector3 t = p - (p * axis) * axis;
+        if (t.norm() > 1e-6 && weighted.resolves(t / t.norm()) &&
+            std::none_of(across.begin(), across.end(), [&](const auto &old) {
+              return std::abs(old.first * t) > 1e-6 * t.norm();
+            }))
+          across.emplace_back(t / t.norm(), weighted.extent(t / t.norm()));
+      }
+    if (across.empty()) // a plane oblique to the axis: its line across
+      {
+        Vector3 t = cross_product_3d(axis,
+                                     cross_product_3d(principal[0].first,
+                                                      principal[1].first));
+        t /= t.norm();
+        across.emplace_back(t, weighted.extent(t));
+      }
+
+    MarkerPolynomial sine, cosine;
+    for (const auto &[t, extent] : across)
+      {
+        const double weight  = extent * extent;
+        const auto direction = weighted.direction(markers, t);
+        add_product(cosine, weight, direction, other.direction(markers, t));
+        add_product(sine,
+                    sign * weight,
+                    direction,
+                    other.direction(markers, cross_product_3d(axis, t)));
+      }
+    return MarkerFunction::angle(sine, cosine);
+  }
+
+
+
   namespace
   {
-    const char *const direction_form =
-      "axes x, y, z separated by ',' or vectors of three numbers separated by "
-      "';' (for example '1,0,0; 0,1,1'), linearly independent";
-
-    // The rows of a joint while they are collected: one coefficient per row and
-    // functional of the joint.
-    class JointBuilder
-    {
-    public:
-      JointBuilder(Joint &joint, Body &body)
-        : joint(joint)
-        , body(body)
-      {}
-
-      // Index of a functional in the joint.
-      unsigned int
-      add_functional(const NodalFunctional &functional,
-                     const bool is_mean_position)
-      {
-        joint.functionals.push_back(body.add_joint_functional(functional));
-        joint.is_mean_position.push_back(is_mean_position);
-        return joint.functionals.size() - 1;
-      }
-
-      // A row sum_p coefficient_p . s_p.
-      void
-      add_row(const std::vector<std::pair<unsigned int, Vector3>> &terms)
-      {
-        rows.push_back(terms);
-      }
-
-      void
-      finish()
-      {
-        const unsigned int n = joint.functionals.size();
-        joint.matrix         = Eigen::MatrixXd::Zero(rows.size(), dim * n);
-        for (unsigned int r = 0; r < rows.size(); ++r)
-          for (const auto &[p, coefficient] : rows[r])
-            for (unsigned int i = 0; i < dim; ++i)
-              joint.matrix(r, dim * p + i) += coefficient[i];
-
-        Eigen::VectorXd values(dim * n);
-        const NodalVector x = body.initial_positions();
-        for (unsigned int p = 0; p < n; ++p)
-          {
-            const Vector3 s = body.joint_functionals()[joint.functionals[p]](x);
-            for (unsigned int i = 0; i < dim; ++i)
-              values(dim * p + i) = s[i];
-          }
-        joint.right_hand_side = joint.matrix * values;
-      }
-
-    private:
-      using Row = std::vector<std::pair<unsigned int, Vector3>>;
-
-      Joint &joint;
-      Body &body;
-      std::vector<Row> rows;
-    };
-
-
-
-    // Principal directions and values of a symmetric matrix.
+    // Rotations blocked about two axes: the axis as a direction of one side is
+    // perpendicular to two directions of the other side.
     void
-    eigen_decomposition(const Matrix3 &matrix,
-                        std::array<double, dim> &values,
-                        std::array<Vector3, dim> &vectors)
+    add_hinge(Joint &joint, const std::array<Vector3, 2> &across)
     {
-      Eigen::Matrix3d copy;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          copy(i, j) = matrix[i][j];
-      const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(copy);
-      for (unsigned int k = 0; k < dim; ++k)
+      const JointSide &weighted =
+        joint.sides[0].is_ground() ? joint.sides[1] : joint.sides[0];
+      const JointSide &other =
+        joint.sides[0].is_ground() ? joint.sides[0] : joint.sides[1];
+      const Vector3 axis = cross_product_3d(across[0], across[1]);
+
+      const bool plane =
+        weighted.resolves(across[0]) && weighted.resolves(across[1]);
+      const bool along = weighted.resolves(axis) || !plane;
+      const bool along_is_better =
+        along && (!plane || weighted.extent(axis) >=
+                              std::min(weighted.extent(across[0]),
+                                       weighted.extent(across[1])));
+      for (const Vector3 &t : across)
         {
-          values[k] = solver.eigenvalues()(k);
-          for (unsigned int i = 0; i < dim; ++i)
-            vectors[k][i] = solver.eigenvectors()(i, k);
+          MarkerPolynomial row;
+          add_product(
+            row,
+            1,
+            weighted.direction(joint.markers, along_is_better ? axis : t),
+            other.direction(joint.markers, along_is_better ? t : axis));
+          joint.rows.push_back({row, 0, Drive()});
         }
     }
 
 
 
-    // theta = R0 Theta sum_k p_k x (R0^T h_k), Theta = (tr(J) I - J)^-1, with
-    // the first moments h_k along the principal directions p_k of the surface.
     void
-    add_mean_rotation(JointBuilder &builder,
-                      const Body &body,
-                      const std::set<types::boundary_id> &surface,
-                      const std::vector<Vector3> &axes)
+    add_blocked_rotations(Joint &joint, const std::vector<Vector3> &axes)
     {
-      const SurfaceGeometry geometry =
-        surface_geometry(body.discretization(), surface);
-      std::array<double, dim> values;
-      std::array<Vector3, dim> directions;
-      eigen_decomposition(geometry.second_moment, values, directions);
-      const double sum = trace(geometry.second_moment);
-
-      std::vector<unsigned int> functional(dim, numbers::invalid_unsigned_int);
-      for (unsigned int k = 0; k < dim; ++k)
-        if (values[k] > 1e-10 * sum)
-          functional[k] = builder.add_functional(
-            surface_moment(body.discretization(), surface, directions[k]),
-            false);
-
-      const Matrix3 &R0 = body.placement_rotation();
+      if (axes.size() == 2)
+        {
+          const Vector3 axis = cross_product_3d(axes[0], axes[1]);
+          return add_hinge(joint, perpendicular(axis / axis.norm()));
+        }
       for (const Vector3 &axis : axes)
-        {
-          const Vector3 axis_in_body = transpose(R0) * axis;
-          Vector3 scaled; // Theta R0^T e
-          for (unsigned int k = 0; k < dim; ++k)
-            scaled += (axis_in_body * directions[k]) / (sum - values[k]) *
-                      directions[k];
-
-          std::vector<std::pair<unsigned int, Vector3>> row;
-          for (unsigned int k = 0; k < dim; ++k)
-            if (functional[k] != numbers::invalid_unsigned_int)
-              row.emplace_back(functional[k],
-                               R0 * cross_product_3d(scaled, directions[k]));
-          builder.add_row(row);
-        }
+        joint.rows.push_back({relative_rotation(joint.markers,
+                                                joint.sides[0],
+                                                joint.sides[1],
+                                                axis),
+                              0,
+                              Drive()});
     }
 
 
 
-    // The surface may turn by any angle about the axis e: either d_e . t = 0 or
-    // d_t . e = 0 for two directions t perpendicular to e.
-    void
-    add_hinge(JointBuilder &builder,
-              const Body &body,
-              const std::set<types::boundary_id> &surface,
-              const std::array<Vector3, 2> &across,
-              const JointParameters &parameters)
+    std::string
+    vector_text(const Vector3 &v)
     {
-      const SurfaceGeometry geometry =
-        surface_geometry(body.discretization(), surface);
-      const Matrix3 to_body = transpose(body.placement_rotation());
-      const Vector3 axis    = cross_product_3d(across[0], across[1]);
+      return format_number(v[0]) + ", " + format_number(v[1]) + ", " +
+             format_number(v[2]);
+    }
 
-      const bool along = geometry.resolves(to_body * axis);
-      const bool plane = geometry.resolves(to_body * across[0]) &&
-                         geometry.resolves(to_body * across[1]);
-      if (!along && !plane)
+
+
+    // The components of a prescribed motion of the ground's side.
+    TimeVectorFunction
+    prescribed_motion(const Joint &joint, const JointParameters &parameters)
+    {
+      const std::string entry =
+        parameters.position.empty() ? "Displacement" : "Position";
+      const std::string &text = parameters.position.empty()
+                                  ? parameters.displacement
+                                  : parameters.position;
+      if (text.empty() || text.find(';') == std::string::npos)
+        {
+          if (!parameters.position.empty())
+            parse_time_vector(text, joint.section, entry);
+          return {};
+        }
+      const TimeVectorFunction motion =
+        parse_time_vector(text, joint.section, entry);
+      const Vector3 start = parameters.position.empty()
+                              ? Vector3()
+                              : joint.sides[0].start_position();
+      const double jump   = (evaluate(motion, 0) - start).norm();
+      if (jump > 1e-8 * joint.sides[0].length())
         throw InputError(
-          parameters.section(),
-          parameters.type == "revolute" ? "Axis" : "Directions",
-          "a plane surface that is oblique to the axis of rotation",
-          "a surface that contains the direction of the axis or is "
-          "perpendicular to it");
+          joint.section,
+          entry,
+          "a motion that starts at " + vector_text(evaluate(motion, 0)) +
+            " m, which is a jump of " + format_number(jump) + " m",
+          "a motion that starts at " + vector_text(start) + " m");
+      return motion;
+    }
 
-      if (along && (!plane || geometry.extent(to_body * axis) >=
-                                std::min(geometry.extent(to_body * across[0]),
-                                         geometry.extent(to_body * across[1]))))
+
+
+    void
+    add_blocked_translations(Joint &joint,
+                             const std::vector<Vector3> &directions,
+                             const JointParameters &parameters)
+    {
+      const JointSide &first = joint.sides[0], &second = joint.sides[1];
+      const TimeVectorFunction motion = prescribed_motion(joint, parameters);
+
+      MarkerExpression distance =
+        relative_position(joint.markers, first, second);
+      const Vector3 offset =
+        first.is_ground() || second.is_ground()
+          ? Vector3()
+          : first.start_position() - second.start_position();
+      const double tolerance = 1e-8 * std::max(first.length(), second.length());
+      double gap             = 0;
+      for (const Vector3 &direction : directions)
+        gap = std::max(gap, std::abs(direction * offset));
+      if (gap > tolerance && !parameters.keep_offset)
+        throw InputError(
+          joint.section,
+          "Between",
+          "surfaces whose mean positions are " + format_number(offset.norm()) +
+            " m apart (" + vector_text(offset) + ")",
+          "surfaces that coincide in the blocked directions, or the entry "
+          "'Offset = keep'");
+
+      const bool all_blocked = (directions.size() == dim);
+      for (const Vector3 &direction : directions)
         {
-          const unsigned int p = builder.add_functional(
-            surface_director(body.discretization(), surface, to_body * axis),
-            false);
-          for (const Vector3 &t : across)
-            builder.add_row({{p, t}});
+          Joint::Row row;
+          MarkerPolynomial function;
+          if (all_blocked)
+            {
+              SurfaceDirection constant;
+              constant.along.constant = direction;
+              add_product(function, 1, distance, constant);
+              if (gap > tolerance)
+                add_product(function,
+                            -offset.norm(),
+                            constant.along,
+                            second.direction(joint.markers,
+                                             offset / offset.norm()));
+              else
+                row.offset = direction * offset;
+            }
+          else
+            {
+              add_product(function,
+                          1,
+                          distance,
+                          second.direction(joint.markers, direction));
+              row.offset = direction * offset;
+            }
+          if (!motion.empty())
+            {
+              // a start other than zero belongs to an absolute position
+              for (unsigned int i = 0; i < dim; ++i)
+                row.drive.add_motion(direction[i], motion[i]);
+              if (!parameters.position.empty())
+                row.offset -= direction * first.start_position();
+            }
+          row.function = function;
+          joint.rows.push_back(row);
         }
+    }
+
+
+
+    void
+    add_distance(Joint &joint, const JointParameters &parameters)
+    {
+      const MarkerExpression distance =
+        relative_position(joint.markers, joint.sides[0], joint.sides[1]);
+      const double start =
+        joint.sides[1].is_ground() || joint.sides[0].is_ground()
+          ? 0.
+          : (joint.sides[0].start_position() - joint.sides[1].start_position())
+              .norm();
+      if (!(start > 1e-8 * joint.sides[0].length()))
+        throw InputError(joint.section,
+                         "Between",
+                         "surfaces whose mean positions coincide",
+                         "two surfaces of bodies at a distance from each "
+                         "other");
+      Joint::Row row;
+      row.function = MarkerFunction::length(distance);
+      if (parameters.length.empty())
+        row.offset = start;
       else
-        for (const Vector3 &t : across)
-          {
-            const unsigned int p = builder.add_functional(
-              surface_director(body.discretization(), surface, to_body * t),
-              false);
-            builder.add_row({{p, axis}});
-          }
+        {
+          const TimeFunction length(parameters.length, joint.section, "Length");
+          if (std::abs(length(0) - start) > 1e-8 * start)
+            throw InputError(joint.section,
+                             "Length",
+                             "a length that starts at " +
+                               format_number(length(0)) + " m, which is a jump",
+                             "a length that starts at the distance " +
+                               format_number(start) + " m of the surfaces");
+          row.drive.add_motion(1, length);
+        }
+      joint.rows.push_back(row);
     }
 
 
 
-    // Two unit vectors perpendicular to a unit vector and to each other, so
-    // that t_1 x t_2 = axis.
-    std::array<Vector3, 2>
-    perpendicular(const Vector3 &axis)
+    void
+    add_universal(Joint &joint, const JointParameters &parameters)
     {
-      Vector3 t;
-      unsigned int smallest = 0;
-      for (unsigned int i = 1; i < dim; ++i)
-        if (std::abs(axis[i]) < std::abs(axis[smallest]))
-          smallest = i;
-      t[smallest] = 1;
-      t -= (t * axis) * axis;
-      t /= t.norm();
-      return {{t, cross_product_3d(axis, t)}};
+      const Vector3 a = parameters.axis / parameters.axis.norm();
+      const Vector3 b = parameters.cross_axis / parameters.cross_axis.norm();
+      MarkerPolynomial row;
+      add_product(row,
+                  1,
+                  joint.sides[0].direction(joint.markers, a),
+                  joint.sides[1].direction(joint.markers, b));
+      joint.rows.push_back({row, 0, Drive()});
     }
 
 
 
-    Vector3
-    parse_direction(const std::string &text, const JointParameters &parameters)
+    void
+    add_drives(Joint &joint, const JointParameters &parameters)
     {
-      const InputError error(parameters.section(),
-                             "Directions",
-                             "'" + parameters.directions + "'",
-                             direction_form);
-      Vector3 direction;
-      if (text == "x" || text == "y" || text == "z")
+      if (!parameters.angle.empty() || !parameters.angular_velocity.empty())
         {
-          direction[text[0] - 'x'] = 1;
-          return direction;
+          Joint::Row row;
+          row.function = relative_angle(joint.markers,
+                                        joint.sides[0],
+                                        joint.sides[1],
+                                        joint.axes[2]);
+          if (!parameters.angle.empty())
+            {
+              const TimeFunction angle(parameters.angle,
+                                       joint.section,
+                                       "Angle");
+              if (std::abs(angle(0)) > 1e-10)
+                throw InputError(joint.section,
+                                 "Angle",
+                                 "an angle that starts at " +
+                                   format_number(angle(0)) +
+                                   " rad, which is a jump",
+                                 "an angle that starts at zero, where the "
+                                 "bodies are placed");
+              row.drive.add_motion(1, angle);
+            }
+          else
+            row.drive.add_rate(1,
+                               TimeFunction(parameters.angular_velocity,
+                                            joint.section,
+                                            "Angular velocity"));
+          joint.rows.push_back(row);
         }
-      const auto numbers = Utilities::split_string_list(text, ',');
-      if (numbers.size() != dim)
-        throw error;
-      try
+      if (!parameters.displacement.empty() &&
+          parameters.displacement.find(';') == std::string::npos)
         {
-          for (unsigned int i = 0; i < dim; ++i)
-            direction[i] = Utilities::string_to_double(numbers[i]);
+          const TimeFunction displacement(parameters.displacement,
+                                          joint.section,
+                                          "Displacement");
+          if (std::abs(displacement(0)) >
+              1e-8 * std::max(joint.sides[0].length(), joint.sides[1].length()))
+            throw InputError(joint.section,
+                             "Displacement",
+                             "a displacement that starts at " +
+                               format_number(displacement(0)) +
+                               " m, which is a jump",
+                             "a displacement that starts at zero, where the "
+                             "bodies are placed");
+          Joint::Row row;
+          row.function = relative_displacement(joint.markers,
+                                               joint.sides[0],
+                                               joint.sides[1],
+                                               joint.axes[2]);
+          if (!joint.sides[0].is_ground() && !joint.sides[1].is_ground())
+            row.offset = joint.axes[2] * (joint.sides[0].start_position() -
+                                          joint.sides[1].start_position());
+          row.drive.add_motion(1, displacement);
+          joint.rows.push_back(row);
         }
-      catch (const std::exception &)
-        {
-          throw error;
-        }
-      if (!(direction.norm() > 0) || !std::isfinite(direction.norm()))
-        throw error;
-      return direction / direction.norm();
     }
   } // namespace
 
 
 
-  void
-  JointParameters::add_parameters(ParameterHandler &prm)
+  Joint
+  make_joint(const JointParameters &parameters, const std::vector<Body> &bodies)
   {
-    prm.add_parameter(
-      "Type",
-      type,
-      "What the joint blocks: 'spherical' the mean position of the surface; "
-      "'mean position' its mean position in the chosen Directions (a guide); "
-      "'mean rotation' its mean rotation about the chosen Directions; "
-      "'revolute' its mean position and every rotation but that about Axis; "
-      "'fixed' its mean position and mean rotation (a clamp). Units: none.",
-      Patterns::Selection("spherical|mean position|mean rotation|revolute|"
-                          "fixed"));
-    prm.add_parameter("Between",
-                      between,
-                      "The two sides of the joint, 'BODY: SURFACE, ground'; "
-                      "required. Units: none.");
-    prm.add_parameter("Directions",
-                      directions,
-                      "Directions or axes of the types 'mean position' and "
-                      "'mean rotation' in the world: " +
-                        std::string(direction_form) +
-                        "; all three if nothing is given. Units: none.");
-    prm.add_parameter("Axis",
-                      axis,
-                      "Axis of a revolute joint in the world. Units: none.");
-  }
+    Joint joint;
+    joint.name    = parameters.name;
+    joint.section = parameters.section();
+    joint.sides   = parse_sides(parameters.between, bodies, joint.section);
+    joint.axes    = parameters.joint_axes();
+    if (parameters.drives_the_ground() && !joint.sides[1].is_ground())
+      throw InputError(joint.section,
+                       parameters.position.empty() ? "Displacement"
+                                                   : "Position",
+                       "a motion in world axes of a joint between bodies",
+                       "such a motion for a joint whose second side is the "
+                       "ground");
 
-
-
-  void
-  JointParameters::check() const
-  {
-    const bool uses_directions =
-      (type == "mean position" || type == "mean rotation");
-    if (!uses_directions && !directions.empty())
-      throw InputError(section(),
-                       "Directions",
-                       "'" + directions + "'",
-                       "nothing for the type '" + type +
-                         "'; directions belong to 'mean position' and 'mean "
-                         "rotation'");
-    if (type == "revolute" && !(axis.norm() > 0))
-      throw InputError(section(),
-                       "Axis",
-                       "nothing or the zero vector",
-                       "the direction of the axis of the revolute joint");
-    if (type != "revolute" && axis.norm() > 0)
-      throw InputError(section(),
-                       "Axis",
-                       "a vector",
-                       "nothing for the type '" + type +
-                         "'; an axis belongs to 'revolute'");
-    direction_vectors();
-  }
-
-
-
-  std::vector<Vector3>
-  JointParameters::direction_vectors() const
-  {
-    std::vector<Vector3> vectors;
-    if (directions.empty())
-      for (unsigned int i = 0; i < dim; ++i)
-        {
-          vectors.emplace_back();
-          vectors.back()[i] = 1;
-        }
+    if (parameters.type == "distance")
+      add_distance(joint, parameters);
     else
       {
-        const bool letters =
-          directions.find_first_of("xyz") != std::string::npos;
-        for (const std::string &part :
-             Utilities::split_string_list(directions, letters ? ',' : ';'))
-          vectors.push_back(parse_direction(part, *this));
+        const std::vector<Vector3> translations =
+          parameters.blocked_translations();
+        if (!translations.empty())
+          add_blocked_translations(joint, translations, parameters);
+        add_blocked_rotations(joint, parameters.blocked_rotations());
+        if (parameters.type == "universal")
+          add_universal(joint, parameters);
       }
-
-    Eigen::MatrixXd matrix(dim, vectors.size());
-    for (unsigned int k = 0; k < vectors.size(); ++k)
-      for (unsigned int i = 0; i < dim; ++i)
-        matrix(i, k) = vectors[k][i];
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> decomposition;
-    decomposition.setThreshold(1e-8);
-    if (decomposition.compute(matrix).rank() !=
-        static_cast<long>(vectors.size()))
-      throw InputError(section(),
-                       "Directions",
-                       "'" + directions + "'",
-                       direction_form);
-    return vectors;
-  }
-
-
-
-  SurfaceName
-  parse_surface_name(const std::string &text,
-                     const std::string &section,
-                     const std::string &entry)
-  {
-    const std::size_t colon = text.find(':');
-    if (colon == std::string::npos)
-      throw InputError(section,
-                       entry,
-                       text.empty() ? "nothing" : "'" + text + "'",
-                       "a surface in the form 'BODY: SURFACE'");
-    return {Utilities::trim(text.substr(0, colon)),
-            Utilities::trim(text.substr(colon + 1))};
-  }
-
-
-
-  unsigned int
-  find_body(const std::vector<Body> &bodies,
-            const std::string &name,
-            const std::string &section,
-            const std::string &entry)
-  {
-    std::string names;
-    for (unsigned int b = 0; b < bodies.size(); ++b)
-      {
-        if (bodies[b].name() == name)
-          return b;
-        names += (b > 0 ? ", " : "") + bodies[b].name();
-      }
-    throw InputError(section,
-                     entry,
-                     "the body '" + name + "', which does not exist",
-                     names);
-  }
-
-
-
-  Joint
-  make_joint(const JointParameters &parameters, std::vector<Body> &bodies)
-  {
-    const auto sides = Utilities::split_string_list(parameters.between, ',');
-    if (sides.size() != 2 || (sides[0] == "ground") == (sides[1] == "ground"))
-      throw InputError(parameters.section(),
-                       "Between",
-                       parameters.between.empty()
-                         ? "nothing"
-                         : "'" + parameters.between + "'",
-                       "a surface and the ground, 'BODY: SURFACE, ground'");
-    const SurfaceName name =
-      parse_surface_name(sides[0] == "ground" ? sides[1] : sides[0],
-                         parameters.section(),
-                         "Between");
-
-    Joint joint;
-    joint.name = parameters.name;
-    joint.body = find_body(bodies, name.body, parameters.section(), "Between");
-    Body &body = bodies[joint.body];
-    const auto &surface =
-      body.discretization().mesh().surface(name.surface,
-                                           parameters.section(),
-                                           "Between");
-
-    const std::vector<Vector3> directions = parameters.direction_vectors();
-    JointBuilder builder(joint, body);
-    if (parameters.type != "mean rotation")
-      {
-        const unsigned int p =
-          builder.add_functional(surface_mean(body.discretization(), surface),
-                                 true);
-        for (const Vector3 &direction : directions)
-          builder.add_row({{p, direction}});
-      }
-
-    if (parameters.type == "revolute")
-      add_hinge(builder,
-                body,
-                surface,
-                perpendicular(parameters.axis / parameters.axis.norm()),
-                parameters);
-    else if (parameters.type == "mean rotation" && directions.size() == 2)
-      {
-        const Vector3 axis = cross_product_3d(directions[0], directions[1]);
-        add_hinge(builder,
-                  body,
-                  surface,
-                  perpendicular(axis / axis.norm()),
-                  parameters);
-      }
-    else if (parameters.type == "mean rotation" || parameters.type == "fixed")
-      add_mean_rotation(builder, body, surface, directions);
-
-    builder.finish();
+    add_drives(joint, parameters);
     return joint;
   }
 } // namespace ACF

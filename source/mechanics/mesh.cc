@@ -16,6 +16,7 @@
 
 #include <algorithm>
 #include <sstream>
+#include <tuple>
 #include <utility>
 
 namespace ACF
@@ -174,6 +175,26 @@ namespace ACF
       "Units: none.",
       Patterns::Selection("none|x|y|z"));
   }
+
+  bool
+  MeshParameters::operator==(const MeshParameters &other) const
+  {
+    const auto all = [](const MeshParameters &p) {
+      return std::tie(p.mesh,
+                      p.element,
+                      p.mesh_size,
+                      p.box_from,
+                      p.box_to,
+                      p.cylinder_from,
+                      p.cylinder_to,
+                      p.cylinder_radius,
+                      p.cells,
+                      p.mirror);
+    };
+    return all(*this) == all(other);
+  }
+
+
 
   void
   MeshParameters::check(const std::string &section) const

@@ -9,10 +9,10 @@
 namespace ACF
 {
   template <typename Number>
-  JointedFactorization<Number>::JointedFactorization(const Body &body,
+  JointedFactorization<Number>::JointedFactorization(const ReferenceBody &body,
                                                      const Number shift)
     : factor(body.operators(), shift)
-    , functionals(body.joint_functionals())
+    , functionals(body.functionals())
     , n_unknowns(body.operators().n_unknowns())
     , columns(dim * functionals.size() * n_unknowns)
   {
@@ -26,30 +26,26 @@ namespace ACF
     factor.solve(columns.data(), dim * functionals.size());
 
     joint_compliance.resize(dim * functionals.size(), dim * functionals.size());
-    std::vector<Number> column(n_unknowns);
     for (unsigned int q = 0; q < joint_compliance.cols(); ++q)
-      {
-        std::copy_n(columns.begin() + q * n_unknowns,
-                    n_unknowns,
-                    column.begin());
-        joint_compliance.col(q) = functional_values(column);
-      }
+      for (unsigned int p = 0; p < functionals.size(); ++p)
+        joint_compliance.template block<dim, 1>(dim * p, q) =
+          functional_value(p, columns.data() + q * n_unknowns);
   }
 
 
 
   template <typename Number>
-  typename JointedFactorization<Number>::Vector
-  JointedFactorization<Number>::functional_values(
-    const std::vector<Number> &x) const
+  Eigen::Matrix<Number, dim, 1>
+  JointedFactorization<Number>::functional_value(const unsigned int functional,
+                                                 const Number *x) const
   {
-    Vector values = Vector::Zero(dim * functionals.size());
-    for (unsigned int p = 0; p < functionals.size(); ++p)
-      for (unsigned int k = 0; k < functionals[p].nodes.size(); ++k)
-        for (unsigned int i = 0; i < dim; ++i)
-          values(dim * p + i) +=
-            functionals[p].weights[k] * x[dim * functionals[p].nodes[k] + i];
-    return values;
+    const NodalFunctional &weights = functionals[functional];
+    Eigen::Matrix<Number, dim, 1> result =
+      Eigen::Matrix<Number, dim, 1>::Zero();
+    for (unsigned int k = 0; k < weights.nodes.size(); ++k)
+      for (unsigned int i = 0; i < dim; ++i)
+        result(i) += weights.weights[k] * x[dim * weights.nodes[k] + i];
+    return result;
   }
 
 
@@ -57,11 +53,10 @@ namespace ACF
   template <typename Number>
   void
   JointedFactorization<Number>::subtract_columns(const Vector &F,
-                                                 std::vector<Number> &x) const
+                                                 Number *x) const
   {
-    using Map = Eigen::Map<const Matrix>;
-    Eigen::Map<Vector>(x.data(), n_unknowns).noalias() -=
-      Map(columns.data(), n_unknowns, F.size()) * F;
+    Eigen::Map<Vector>(x, n_unknowns).noalias() -=
+      Eigen::Map<const Matrix>(columns.data(), n_unknowns, F.size()) * F;
   }
 
 
@@ -80,13 +75,16 @@ namespace ACF
     const Number shift,
     unsigned long &counter)
   {
-    auto &entry = factors[Key(&body, std::real(shift), std::imag(shift))];
+    auto &entry =
+      factors[Key(&body.reference(), std::real(shift), std::imag(shift))];
     if (!entry)
       {
         const PhaseTimer timer(statistics, "factorisation");
         try
           {
-            entry = std::make_unique<JointedFactorization<Number>>(body, shift);
+            entry =
+              std::make_unique<JointedFactorization<Number>>(body.reference(),
+                                                             shift);
           }
         catch (const SimulationError &error)
           {
@@ -96,7 +94,8 @@ namespace ACF
         ++counter;
         const FactorizationStatistics &cost =
           entry->factorization().statistics();
-        statistics.setup_solves += 1 + dim * body.joint_functionals().size();
+        statistics.setup_solves +=
+          1 + dim * body.reference().functionals().size();
         statistics.factor_entries += cost.n_entries;
         statistics.factor_bytes += cost.n_bytes;
         statistics.joint_column_bytes += entry->column_bytes();

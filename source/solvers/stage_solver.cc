@@ -5,6 +5,9 @@
 
 #include <deal.II/base/numbers.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ACF
 {
   namespace
@@ -38,10 +41,9 @@ namespace ACF
                           const unsigned int body,
                           const std::vector<Number> &factors,
                           const Matrix3 &rotation,
-                          std::vector<Number> &result)
+                          Number *result)
     {
       const unsigned int n = stages[0][body].size() / dim;
-      result.resize(dim * n);
       for (unsigned int a = 0; a < n; ++a)
         {
           Number sum[dim] = {};
@@ -60,12 +62,12 @@ namespace ACF
     // z += Re(factor R w) for one body and stage
     template <typename Number>
     void
-    add_in_world_frame(const std::vector<Number> &w,
+    add_in_world_frame(const Number *w,
                        const Number factor,
                        const Matrix3 &rotation,
                        NodalVector &z)
     {
-      for (unsigned int a = 0; a < w.size() / dim; ++a)
+      for (unsigned int a = 0; a < z.size() / dim; ++a)
         {
           Vector3 value;
           for (unsigned int c = 0; c < dim; ++c)
@@ -77,21 +79,37 @@ namespace ACF
 
 
 
+    // Makes a system if there is none, and prepares it for the equations in
+    // which rate stands for the derivative by time: with Rayleigh damping
+    // rate^2 M + rate (alpha M + beta A) + A.
     template <typename Number>
-    std::unique_ptr<JointSchurComplement<Number>>
-    make_schur_complement(const MultibodySystem &system,
-                          const std::vector<Matrix3> &rotations,
-                          const Number shift,
-                          FactorizationCache &cache,
-                          Statistics &statistics)
+    void
+    prepare_system(std::unique_ptr<CoupledSystem<Number>> &coupled_system,
+                   const MultibodySystem &system,
+                   const Number rate,
+                   const Number squared_rate,
+                   const std::vector<Matrix3> &rotations,
+                   const MarkerLinearization &linearization,
+                   FactorizationCache &cache,
+                   Statistics &statistics)
     {
-      std::vector<JointedFactorization<Number> *> factors;
+      if (!coupled_system)
+        coupled_system =
+          std::make_unique<CoupledSystem<Number>>(system, cache, statistics);
+      std::vector<BodyMatrix<Number>> matrices;
       for (const Body &body : system.bodies())
-        factors.push_back(&cache.get(body, shift));
-      return std::make_unique<JointSchurComplement<Number>>(system,
-                                                            rotations,
-                                                            factors,
-                                                            statistics);
+        if (body.is_damped())
+          {
+            const Number scale = 1. + body.stiffness_damping() * rate;
+            matrices.push_back(
+              {(squared_rate + body.mass_damping() * rate) / scale, scale});
+          }
+        else
+          matrices.push_back({squared_rate, Number(1)});
+      coupled_system->prepare(matrices,
+                              rotations,
+                              linearization,
+                              {squared_rate, rate, Number(1)});
     }
   } // namespace
 
@@ -114,20 +132,36 @@ namespace ACF
 
   void
   DiagonalizedStageSolver::prepare(const double step_size,
-                                   const std::vector<Matrix3> &new_rotations)
+                                   const std::vector<Matrix3> &new_rotations,
+                                   const MarkerLinearization &linearization)
   {
     rotations = new_rotations;
     for (unsigned int k = 0; k < diagonalization.components.size(); ++k)
       {
         const auto &component = diagonalization.components[k];
-        const std::complex<double> shift =
+        // eigenvalues of the inverse tableau have positive real parts
+        const std::complex<double> rate =
+          std::sqrt(component.eigenvalue) / step_size;
+        const std::complex<double> squared_rate =
           component.eigenvalue / (step_size * step_size);
         if (component.is_real())
-          real_systems[k] = make_schur_complement(
-            system, rotations, shift.real(), cache, statistics);
+          prepare_system(real_systems[k],
+                         system,
+                         rate.real(),
+                         squared_rate.real(),
+                         rotations,
+                         linearization,
+                         cache,
+                         statistics);
         else
-          complex_systems[k] =
-            make_schur_complement(system, rotations, shift, cache, statistics);
+          prepare_system(complex_systems[k],
+                         system,
+                         rate,
+                         squared_rate,
+                         rotations,
+                         linearization,
+                         cache,
+                         statistics);
       }
   }
 
@@ -137,15 +171,16 @@ namespace ACF
   void
   DiagonalizedStageSolver::solve_component(
     const StageDiagonalization::Component &component,
-    JointSchurComplement<Number> &schur_complement,
-    const StageVector &stages,
+    CoupledSystem<Number> &coupled_system,
+    const StageVector *const stages,
     const StageConstraints &constraints,
     StageVector &stage_increments,
     StageConstraints &constraint_increments)
   {
-    using Vector = typename JointSchurComplement<Number>::Vector;
+    using Vector = typename CoupledSystem<Number>::Vector;
 
-    const unsigned int n_stages = stages.size();
+    const unsigned int n_stages = constraints.size();
+    const unsigned int n_bodies = system.bodies().size();
     std::vector<Number> from_stages, to_stages;
     for (unsigned int i = 0; i < n_stages; ++i)
       {
@@ -154,21 +189,26 @@ namespace ACF
         to_stages.push_back((component.is_real() ? 1. : 2.) *
                             convert<Number>(component.to_stages[i]));
       }
-
-    std::vector<std::vector<Number>> bodies(system.bodies().size());
-    for (unsigned int b = 0; b < bodies.size(); ++b)
-      combine_in_body_frame(stages, b, from_stages, rotations[b], bodies[b]);
     Vector g = Vector::Zero(system.n_constraints());
     for (unsigned int i = 0; i < n_stages; ++i)
       g += from_stages[i] * constraints[i].template cast<Number>();
 
-    const Vector mu = schur_complement.solve(bodies, g);
-    solve_counter<Number>(statistics) += bodies.size();
+    Vector mu;
+    if (stages != nullptr)
+      {
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          combine_in_body_frame(
+            *stages, b, from_stages, rotations[b], coupled_system.body(b));
+        mu = coupled_system.solve(g);
+        solve_counter<Number>(statistics) += n_bodies;
+      }
+    else
+      mu = coupled_system.solve_constraints(g);
 
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        for (unsigned int b = 0; b < bodies.size(); ++b)
-          add_in_world_frame(bodies[b],
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          add_in_world_frame(coupled_system.body(b),
                              to_stages[i],
                              rotations[b],
                              stage_increments[i][b]);
@@ -180,17 +220,16 @@ namespace ACF
 
 
   void
-  DiagonalizedStageSolver::solve(StageVector &stages,
-                                 StageConstraints &constraints)
+  DiagonalizedStageSolver::solve_all(const StageVector *const stages,
+                                     const StageConstraints &constraints,
+                                     StageVector &stage_increments,
+                                     StageConstraints &constraint_increments)
   {
-    StageVector stage_increments(stages);
-    StageConstraints constraint_increments(constraints);
     for (auto &stage : stage_increments)
       for (auto &vector : stage)
         vector = 0;
     for (auto &rows : constraint_increments)
       rows.setZero();
-
     for (unsigned int k = 0; k < diagonalization.components.size(); ++k)
       if (diagonalization.components[k].is_real())
         solve_component(diagonalization.components[k],
@@ -206,7 +245,29 @@ namespace ACF
                         constraints,
                         stage_increments,
                         constraint_increments);
+  }
+
+
+
+  void
+  DiagonalizedStageSolver::solve(StageVector &stages,
+                                 StageConstraints &constraints)
+  {
+    StageVector stage_increments(stages);
+    StageConstraints constraint_increments(constraints);
+    solve_all(&stages, constraints, stage_increments, constraint_increments);
     stages.swap(stage_increments);
+    constraints.swap(constraint_increments);
+  }
+
+
+
+  void
+  DiagonalizedStageSolver::solve_constraints(StageVector &stages,
+                                             StageConstraints &constraints)
+  {
+    StageConstraints constraint_increments(constraints);
+    solve_all(nullptr, constraints, stages, constraint_increments);
     constraints.swap(constraint_increments);
   }
 
@@ -227,16 +288,80 @@ namespace ACF
 
   void
   OneStepStageSolver::prepare(const double step_size,
-                              const std::vector<Matrix3> &new_rotations)
+                              const std::vector<Matrix3> &new_rotations,
+                              const MarkerLinearization &linearization)
   {
     rotations = new_rotations;
     for (unsigned int i = 0; i < systems.size(); ++i)
-      systems[i] = make_schur_complement(system,
-                                         rotations,
-                                         1 / (step_size * step_size *
-                                              triangularization.diagonal(i)),
-                                         cache,
-                                         statistics);
+      {
+        const double squared_rate =
+          1 / (step_size * step_size * triangularization.diagonal(i));
+        prepare_system(systems[i],
+                       system,
+                       std::sqrt(squared_rate),
+                       squared_rate,
+                       rotations,
+                       linearization,
+                       cache,
+                       statistics);
+      }
+  }
+
+
+
+  void
+  OneStepStageSolver::solve_all(const StageVector *const stages,
+                                const StageConstraints &constraints,
+                                StageVector &stage_increments,
+                                StageConstraints &constraint_increments)
+  {
+    // With W_j = tau^2 D_j dY_j:
+    // (M / (tau^2 D_i) + A) W_i + B^T dLambda_i = r_i - A sum_j<i L_ij W_j,
+    // B W_i = g_i - sum_j<i L_ij B W_j.
+    const unsigned int n_stages = constraints.size();
+    const unsigned int n_bodies = system.bodies().size();
+    const auto &L               = triangularization.lower;
+
+    StageConstraints BW(n_stages);
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
+        std::vector<double> select(n_stages, 0.);
+        select[i] = 1;
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          {
+            double *const r      = systems[i]->body(b);
+            const unsigned int n = stage_increments[i][b].size();
+            if (stages != nullptr)
+              combine_in_body_frame(*stages, b, select, rotations[b], r);
+            else
+              std::fill(r, r + n, 0.);
+            if (i == 0)
+              continue;
+            NodalVector sum(n), product(n);
+            for (unsigned int j = 0; j < i; ++j)
+              for (unsigned int k = 0; k < n; ++k)
+                sum[k] += L(i, j) * systems[j]->body(b)[k];
+            system.bodies()[b].operators().stiffness_matrix.vmult(product, sum);
+            for (unsigned int k = 0; k < n; ++k)
+              r[k] -= product[k];
+          }
+        BW[i] = constraints[i];
+        for (unsigned int j = 0; j < i; ++j)
+          BW[i] -= L(i, j) * BW[j];
+        constraint_increments[i] = systems[i]->solve(BW[i]);
+        statistics.real_solves += n_bodies;
+      }
+
+    for (unsigned int i = 0; i < n_stages; ++i)
+      for (unsigned int b = 0; b < n_bodies; ++b)
+        {
+          stage_increments[i][b] = 0;
+          for (unsigned int j = 0; j < n_stages; ++j)
+            add_in_world_frame(systems[j]->body(b),
+                               triangularization.increments(i, j),
+                               rotations[b],
+                               stage_increments[i][b]);
+        }
   }
 
 
@@ -244,49 +369,21 @@ namespace ACF
   void
   OneStepStageSolver::solve(StageVector &stages, StageConstraints &constraints)
   {
-    // With W_j = tau^2 D_j dY_j:
-    // (M / (tau^2 D_i) + A) W_i + B^T dLambda_i = r_i - A sum_j<i L_ij W_j,
-    // B W_i = g_i - sum_j<i L_ij B W_j.
-    const unsigned int n_stages = stages.size();
-    const unsigned int n_bodies = system.bodies().size();
-    const auto &L               = triangularization.lower;
+    StageVector stage_increments(stages);
+    StageConstraints constraint_increments(constraints);
+    solve_all(&stages, constraints, stage_increments, constraint_increments);
+    stages.swap(stage_increments);
+    constraints.swap(constraint_increments);
+  }
 
-    std::vector<std::vector<std::vector<double>>> W(n_stages);
-    StageConstraints BW(n_stages);
-    for (unsigned int i = 0; i < n_stages; ++i)
-      {
-        std::vector<double> select(n_stages, 0.);
-        select[i] = 1;
-        W[i].resize(n_bodies);
-        for (unsigned int b = 0; b < n_bodies; ++b)
-          {
-            combine_in_body_frame(stages, b, select, rotations[b], W[i][b]);
-            if (i == 0)
-              continue;
-            NodalVector sum(W[i][b].size()), product(W[i][b].size());
-            for (unsigned int j = 0; j < i; ++j)
-              for (unsigned int k = 0; k < sum.size(); ++k)
-                sum[k] += L(i, j) * W[j][b][k];
-            system.bodies()[b].operators().stiffness_matrix.vmult(product, sum);
-            for (unsigned int k = 0; k < sum.size(); ++k)
-              W[i][b][k] -= product[k];
-          }
-        BW[i] = constraints[i];
-        for (unsigned int j = 0; j < i; ++j)
-          BW[i] -= L(i, j) * BW[j];
-        constraints[i] = systems[i]->solve(W[i], BW[i]);
-        statistics.real_solves += n_bodies;
-      }
 
-    for (unsigned int i = 0; i < n_stages; ++i)
-      for (unsigned int b = 0; b < n_bodies; ++b)
-        {
-          stages[i][b] = 0;
-          for (unsigned int j = 0; j < n_stages; ++j)
-            add_in_world_frame(W[j][b],
-                               triangularization.increments(i, j),
-                               rotations[b],
-                               stages[i][b]);
-        }
+
+  void
+  OneStepStageSolver::solve_constraints(StageVector &stages,
+                                        StageConstraints &constraints)
+  {
+    StageConstraints constraint_increments(constraints);
+    solve_all(nullptr, constraints, stages, constraint_increments);
+    constraints.swap(constraint_increments);
   }
 } // namespace ACF

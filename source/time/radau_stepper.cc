@@ -26,7 +26,9 @@ namespace ACF
     prm.add_parameter("End time",
                       end_time,
                       "Time at which the simulation ends; it starts at zero; "
-                      "required. Units: s.",
+                      "required, but for a simulation that is over after the "
+                      "static equilibrium or the modes at the start. Units: "
+                      "s.",
                       Patterns::Double(0));
     prm.add_parameter("Step size",
                       step_size,
@@ -189,6 +191,98 @@ namespace ACF
 
 
 
+  NodalVector
+  RadauStepper::stage_velocity(const SystemState &state,
+                               const unsigned int stage,
+                               const unsigned int body) const
+  {
+    NodalVector v(state.velocities[body]);
+    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+      v.add(A_inverse(stage, j) / tried_step_size, stages[j][body]);
+    return v;
+  }
+
+
+
+  double
+  RadauStepper::stage_time(const SystemState &state,
+                           const unsigned int stage) const
+  {
+    return state.time + tableau.c(stage) * tried_step_size;
+  }
+
+
+
+  void
+  RadauStepper::prepare(const SystemState &state)
+  {
+    MarkerLinearization linearization;
+    if (system.n_marker_values() > 0)
+      {
+        const unsigned int n = tableau.n_stages();
+        Eigen::VectorXd s    = Eigen::VectorXd::Zero(system.n_marker_values());
+        Eigen::VectorXd v    = s;
+        Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.n_constraints());
+        SystemVector work(system.bodies().size());
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            for (unsigned int b = 0; b < work.size(); ++b)
+              work[b] = stage_position(state, i, b);
+            s += system.marker_values(work) / n;
+            lambda += stage_multipliers[i] / n;
+            if (!system.needs_velocities())
+              continue;
+            for (unsigned int b = 0; b < work.size(); ++b)
+              work[b] = stage_velocity(state, i, b);
+            v += system.marker_values(work) / n;
+          }
+        linearization = system.linearize(
+          state.time + 0.5 * tried_step_size, s, v, lambda, state.law_values);
+      }
+    stage_solver->prepare(tried_step_size,
+                          predicted_rotations(state),
+                          linearization);
+  }
+
+
+
+  bool
+  RadauStepper::assemble_body_residual(const SystemState &state,
+                                       const unsigned int stage,
+                                       const unsigned int b,
+                                       const NodalVector &position,
+                                       const NodalVector &velocity,
+                                       const NodalVector &acceleration,
+                                       NodalVector &residual) const
+  {
+    const Body &body               = system.bodies()[b];
+    const BodyOperators &operators = body.operators();
+    NodalVector work(operators.n_unknowns());
+    ++statistics.force_evaluations;
+    const bool success =
+      body.is_damped()
+        ? damped_reduced_strain_force(operators,
+                                      body.rotation_measure(),
+                                      position,
+                                      velocity,
+                                      body.mass_damping(),
+                                      body.stiffness_damping(),
+                                      residual,
+                                      work)
+        : reduced_strain_force(
+            operators, body.rotation_measure(), position, residual, work)
+            .has_value();
+    if (!success)
+      return false;
+    operators.mass_matrix.vmult(work, acceleration);
+    residual += work;
+    residual *= -1;
+    system.add_loads(b, stage_time(state, stage), position, residual);
+    return true;
+  }
+
+
+
   bool
   RadauStepper::assemble_residual(const SystemState &state,
                                   StageVector &residual,
@@ -196,43 +290,91 @@ namespace ACF
                                   std::string &failure)
   {
     const double inverse_square = 1 / (tried_step_size * tried_step_size);
-    SystemVector positions(system.bodies().size());
+    const unsigned int n_bodies = system.bodies().size();
+    const bool has_masses       = !system.masses().empty();
+    SystemVector positions(n_bodies), velocities(n_bodies),
+      accelerations(n_bodies);
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
-        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+        for (unsigned int b = 0; b < n_bodies; ++b)
           {
-            const Body &body               = system.bodies()[b];
-            const BodyOperators &operators = body.operators();
-            NodalVector work(operators.n_unknowns());
-
             positions[b] = stage_position(state, i, b);
-            ++statistics.force_evaluations;
-            if (!reduced_strain_force(operators,
-                                      body.rotation_measure(),
-                                      positions[b],
-                                      residual[i][b],
-                                      work))
+            if (system.needs_velocities())
+              velocities[b] = stage_velocity(state, i, b);
+            accelerations[b].reinit(positions[b].size());
+            for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+              accelerations[b].add(inverse_square * A_inverse_squared(i, j),
+                                   stages[j][b]);
+            if (!assemble_body_residual(state,
+                                        i,
+                                        b,
+                                        positions[b],
+                                        velocities[b],
+                                        accelerations[b],
+                                        residual[i][b]))
               {
-                failure = "body '" + body.name() +
+                failure = "body '" + system.bodies()[b].name() +
                           "' is turned inside out (the determinant of its "
                           "mean deformation gradient is not positive)";
                 return false;
               }
-
-            NodalVector acceleration(operators.n_unknowns());
-            for (unsigned int j = 0; j < tableau.n_stages(); ++j)
-              acceleration.add(inverse_square * A_inverse_squared(i, j),
-                               stages[j][b]);
-            operators.mass_matrix.vmult(work, acceleration);
-            residual[i][b] += work;
-            residual[i][b] *= -1;
-            system.add_external_and_joint_forces(b,
-                                                 stage_multipliers[i],
-                                                 residual[i][b]);
           }
-        constraint_residual[i] = -system.constraint_residual(positions);
+        if (system.n_marker_values() == 0)
+          continue;
+        const double time       = stage_time(state, i);
+        const Eigen::VectorXd s = system.marker_values(positions);
+        Eigen::VectorXd v, a;
+        if (system.needs_velocities())
+          v = system.marker_values(velocities);
+        if (has_masses)
+          a = system.marker_values(accelerations);
+        const Eigen::VectorXd F = system.marker_forces(
+          time, s, v, a, stage_multipliers[i], state.law_values);
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          system.add_marker_forces(b, F, residual[i][b]);
+        constraint_residual[i] = -system.constraint_residual(time, s);
       }
     return true;
+  }
+
+
+
+  void
+  RadauStepper::correct_constraints(const SystemState &state)
+  {
+    // three corrections reach round-off from any tolerance of the iteration
+    constexpr unsigned int max_corrections = 3;
+    double length                          = 0;
+    for (const Body &body : system.bodies())
+      length = std::max(length, body.operators().length);
+    const double tolerance = 1e-14 * std::max(1., length);
+
+    SystemVector positions(system.bodies().size());
+    StageVector increment(stages);
+    for (unsigned int k = 0; k < max_corrections; ++k)
+      {
+        StageConstraints constraints(tableau.n_stages());
+        double largest = 0;
+        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+          {
+            for (unsigned int b = 0; b < positions.size(); ++b)
+              positions[b] = stage_position(state, i, b);
+            constraints[i] =
+              -system.constraint_residual(positions, stage_time(state, i));
+            largest =
+              std::max(largest, constraints[i].lpNorm<Eigen::Infinity>());
+          }
+        if (!(largest > tolerance))
+          return;
+        stage_solver->solve_constraints(increment, constraints);
+        ++statistics.constraint_corrections;
+        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+          {
+            for (unsigned int b = 0; b < positions.size(); ++b)
+              stages[i][b] += increment[i][b];
+            stage_multipliers[i] += constraints[i];
+          }
+      }
   }
 
 
@@ -262,7 +404,7 @@ namespace ACF
   {
     tried_step_size = step_size;
     predict(state, step_size);
-    stage_solver->prepare(step_size, predicted_rotations(state));
+    prepare(state);
 
     // The one-step matrices belong to a non-normal iteration, whose increments
     // may grow at first.
@@ -332,11 +474,24 @@ namespace ACF
             convergence_factor =
               std::max(factor, std::numeric_limits<double>::epsilon());
             report.converged = true;
+            if (!system.has_affine_joints())
+              correct_constraints(state);
             return report;
           }
       }
     report.failure = "the iteration did not reach its tolerance";
     return report;
+  }
+
+
+
+  void
+  RadauStepper::update_laws(SystemState &state, const SystemState &before) const
+  {
+    if (!system.force_elements().empty())
+      state.law_values =
+        system.law_values(system.marker_values(state.positions),
+                          before.law_values);
   }
 
 
@@ -359,6 +514,7 @@ namespace ACF
                                   stages[j][b]);
       }
     state.multipliers = stage_multipliers[last];
+    update_laws(state, step_start);
   }
 
 
@@ -401,6 +557,7 @@ namespace ACF
                                     accepted_stages[i][b]);
           }
       }
+    update_laws(state, step_start);
     return state;
   }
 } // namespace ACF

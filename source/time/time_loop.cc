@@ -43,6 +43,41 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // Residuals of the constraints at the end of a step.
+    void
+    check_constraints(const MultibodySystem &system,
+                      const SystemState &state,
+                      Statistics &statistics)
+    {
+      if (system.n_constraints() == 0)
+        return;
+      const Eigen::VectorXd s        = system.marker_values(state.positions);
+      const Eigen::VectorXd v        = system.marker_values(state.velocities);
+      statistics.constraint_residual = std::max(
+        statistics.constraint_residual,
+        system.constraint_residual(state.time, s).lpNorm<Eigen::Infinity>());
+      statistics.constraint_velocity_residual = std::max(
+        statistics.constraint_velocity_residual,
+        system.constraint_velocity(state.time, s, v).lpNorm<Eigen::Infinity>());
+
+      double length = 0;
+      for (const Body &body : system.bodies())
+        length = std::max(length, body.operators().length);
+      const double contradiction = system.contradiction(state.time, s);
+      if (contradiction > 1e-8 * std::max(1., length))
+        throw SimulationError("At time " + format_number(state.time) +
+                              " s the joints " + system.repeating_joints() +
+                              " contradict each other by " +
+                              format_number(contradiction) +
+                              " m or rad. The results up to this time are "
+                              "kept.");
+    }
+  } // namespace
+
+
+
   Observer::Observer(const double interval)
     : observation_interval(interval)
   {}
@@ -70,12 +105,12 @@ namespace ACF
 
   void
   run_time_loop(const MultibodySystem &system,
+                SystemState state,
                 const TimeParameters &parameters,
                 const std::vector<Observer *> &observers,
                 Progress &progress,
                 Statistics &statistics)
   {
-    SystemState state = system.initial_state();
     RadauStepper stepper(system, parameters, statistics);
     StepController controller(parameters.step_size, parameters.max_halvings);
 
@@ -105,6 +140,7 @@ namespace ACF
         controller.accept();
         state.time = controller.time();
         ++statistics.steps;
+        check_constraints(system, state, statistics);
         statistics.max_newton_iterations =
           std::max(statistics.max_newton_iterations, report.iterations);
 

@@ -25,6 +25,9 @@ namespace ACF
 
     unsigned long newton_iterations = 0;
 
+    /** Linear systems solved for the static equilibrium at the start. */
+    unsigned long equilibrium_iterations = 0;
+
     /** Largest number of iterations of an accepted step. */
     unsigned int max_newton_iterations = 0;
 
@@ -42,8 +45,16 @@ namespace ACF
     /** Evaluations of a body's elastic force. */
     unsigned long force_evaluations = 0;
 
-    /** Factorised Schur complements of the joints. */
-    unsigned long schur_complements = 0;
+    /** Factorised systems of the markers of joints and force elements. */
+    unsigned long marker_factorizations = 0;
+
+    /** Corrections of nonlinear constraints without solves of bodies. */
+    unsigned long constraint_corrections = 0;
+
+    /** Largest residual of the constraints at ends of steps: of positions, m or
+     * rad, and of velocities, m/s or rad/s. */
+    double constraint_residual          = 0;
+    double constraint_velocity_residual = 0;
 
     /** Evaluations of von Mises stresses (bodies times output times). */
     unsigned long stress_evaluations = 0;

@@ -33,6 +33,12 @@ namespace ACF
     /** World axis about which the angle of a chord is measured: x, y, z. */
     std::string axis = "x";
 
+    /** Components of a vector that are written: some of x, y, z; empty: all. */
+    std::vector<std::string> selected;
+
+    /** Whether a reaction is written in the axes of its joint. */
+    bool in_joint_axes = false;
+
     void
     add_parameters(ParameterHandler &prm);
 

@@ -50,21 +50,69 @@ namespace ACF
 
 
 
+  /** Values at the nodes of all bodies, for one file. */
+  struct VtuField
+  {
+    std::string name;
+    unsigned int n_components;
+    bool double_precision;
+
+    /** Of each body. */
+    std::vector<std::vector<double>> values;
+  };
+
+
+
+  /**
+   * Writes files for ParaView. A body is a piece of quadratic cells (10-node
+   * tetrahedra or 27-node hexahedra) that share their nodes; the value `body`
+   * of cells is its index. ParaView reads the files from version 5.10 on (VTK
+   * 9.1). A file gets its name when it is complete; before that, it ends in
+   * `.tmp`.
+   */
+  class VtuWriter
+  {
+  public:
+    /**
+     * @param points of the nodes of all bodies, m
+     * @param directory where to write; exists
+     */
+    VtuWriter(const MultibodySystem &system,
+              const SystemVector &points,
+              const std::filesystem::path &directory);
+
+    /**
+     * Writes NAME.vtu with fields, the first one as the vectors that warp, and
+     * makes it the last entry of a list of files with times.
+     * @throws SimulationError if a file cannot be written
+     */
+    void
+    write(const std::string &name,
+          const std::vector<VtuField> &fields,
+          const double time,
+          const std::string &list);
+
+  private:
+    const MultibodySystem &system;
+    const std::filesystem::path directory;
+
+    /** Of each body: the XML elements that are the same in all files. */
+    std::vector<std::string> geometries;
+
+    std::vector<std::pair<double, std::string>> times_and_names;
+  };
+
+
+
   /**
    * Writes `solution-000000.vtu`, `solution-000001.vtu`, ... with all bodies,
    * and `solution.pvd` with the times of these files.
    *
-   * A body is a piece of quadratic cells (10-node tetrahedra or 27-node
-   * hexahedra) that share their nodes. The points are the positions at the
-   * start; warped by `displacement` they are those at the file's time. Values
-   * at points: `displacement` (m), `velocity` (m/s), and if asked for
-   * `von_mises_stress` (Pa), see von_mises_stress(). Values of cells: `body`,
-   * the index of the body. Points and displacements have double precision, so
-   * that small strains survive large displacements; the rest is single.
-   *
-   * ParaView reads the files from version 5.10 on (VTK 9.1).
-   *
-   * A file gets its name when it is complete; before that, it ends in `.tmp`.
+   * The points are the positions at the start; warped by `displacement` they
+   * are those at the file's time. Values at points: `displacement` (m),
+   * `velocity` (m/s), and if asked for `von_mises_stress` (Pa), see
+   * von_mises_stress(). Points and displacements have double precision, so that
+   * small strains survive large displacements; the rest is single.
    */
   class VtuOutput : public Observer
   {
@@ -89,21 +137,15 @@ namespace ACF
     observe(const SystemState &state) override;
 
   private:
-    std::string
-    piece(const unsigned int body, const SystemState &state) const;
-
     const MultibodySystem &system;
-    const std::filesystem::path directory;
     const bool stress;
     Statistics &statistics;
 
     /** Of each body: nodal positions at the start, m. */
-    SystemVector initial_positions;
+    const SystemVector initial_positions;
 
-    /** Of each body: the XML elements that are the same in all files. */
-    std::vector<std::string> geometries;
-
-    std::vector<std::pair<double, std::string>> times_and_names;
+    VtuWriter writer;
+    unsigned int n_files = 0;
   };
 } // namespace ACF
 

@@ -4,12 +4,17 @@
 #ifndef acf_mechanics_body_h
 #define acf_mechanics_body_h
 
+#include <acf/base/time_function.h>
 #include <acf/mechanics/body_operators.h>
 #include <acf/mechanics/functionals.h>
+#include <acf/mechanics/reduced_strain.h>
 #include <acf/mechanics/rotation.h>
 
 #include <filesystem>
+#include <list>
+#include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 namespace ACF
@@ -22,6 +27,10 @@ namespace ACF
     Material material;
     RotationMeasure rotation_measure = RotationMeasure::polar;
 
+    /** Rayleigh damping of the deformation: alpha, 1/s, and beta, s. */
+    double mass_damping      = 0;
+    double stiffness_damping = 0;
+
     /** Placement $x = \text{position} + R_0 X$; m and rad. */
     Point<dim> position;
     Vector3 rotation;
@@ -29,6 +38,11 @@ namespace ACF
     /** Rigid motion at the start: $v + \omega \times (x - \bar x)$. */
     Vector3 velocity;
     Vector3 angular_velocity;
+
+    /** Fields of the mesh's coordinates in its axes, "x; y; z"; may be empty.
+     */
+    std::string displacement_field;
+    std::string velocity_field;
 
     /** Declares the entries of a body in the current subsection. */
     void
@@ -49,18 +63,90 @@ namespace ACF
 
 
   /**
-   * A body of the system: its constant operators, its placement in the world
-   * and the functionals through which joints act on it.
+   * What identical bodies (same mesh, element and material) share: everything
+   * that does not depend on where a body is, and so also its factorisations.
    */
-  class Body
+  class ReferenceBody
   {
   public:
     /**
      * Makes or reads the mesh and assembles the operators.
      * @param directory where relative mesh file names start
      */
+    ReferenceBody(const BodyParameters &parameters,
+                  const std::filesystem::path &directory);
+
+    /** Whether a body with these parameters can share it. */
+    bool
+    fits(const BodyParameters &parameters) const;
+
+    const BodyDiscretization &
+    discretization() const
+    {
+      return finite_elements;
+    }
+
+    const BodyOperators &
+    operators() const
+    {
+      return constant_operators;
+    }
+
+    /** Functionals through which joints and force elements act. */
+    const std::vector<NodalFunctional> &
+    functionals() const
+    {
+      return marker_functionals;
+    }
+
+    /**
+     * Makes a functional one of the functionals(), unless it is.
+     * @return its index
+     */
+    unsigned int
+    add_functional(const NodalFunctional &functional);
+
+    /** See surface_geometry(); integrated once for each surface. */
+    const SurfaceGeometry &
+    geometry(const Surface &surface) const;
+
+    /** See surface_mean(). */
+    const NodalFunctional &
+    mean(const Surface &surface) const;
+
+    /** See surface_director(). */
+    const NodalFunctional &
+    director(const Surface &surface, const Vector3 &direction) const;
+
+  private:
+    MeshParameters mesh;
+    Material material;
+    BodyDiscretization finite_elements;
+    BodyOperators constant_operators;
+    std::vector<NodalFunctional> marker_functionals;
+
+    /** What was integrated over surfaces; many joints ask for the same. */
+    struct SurfaceIntegrals
+    {
+      SurfaceGeometry geometry;
+      std::optional<NodalFunctional> mean;
+      std::list<std::pair<Vector3, NodalFunctional>> directors;
+    };
+
+    SurfaceIntegrals &
+    integrals(const Surface &surface) const;
+
+    mutable std::map<Surface, SurfaceIntegrals> surface_integrals;
+  };
+
+
+
+  /** A body of the system: a reference body and its placement in the world. */
+  class Body
+  {
+  public:
     Body(const BodyParameters &parameters,
-         const std::filesystem::path &directory);
+         const std::shared_ptr<ReferenceBody> &reference);
 
     const std::string &
     name() const
@@ -75,16 +161,28 @@ namespace ACF
       return parameters.section();
     }
 
+    ReferenceBody &
+    reference()
+    {
+      return *reference_body;
+    }
+
+    const ReferenceBody &
+    reference() const
+    {
+      return *reference_body;
+    }
+
     const BodyDiscretization &
     discretization() const
     {
-      return *finite_elements;
+      return reference_body->discretization();
     }
 
     const BodyOperators &
     operators() const
     {
-      return *constant_operators;
+      return reference_body->operators();
     }
 
     const Material &
@@ -99,6 +197,33 @@ namespace ACF
       return parameters.rotation_measure;
     }
 
+    /** alpha, 1/s */
+    double
+    mass_damping() const
+    {
+      return parameters.mass_damping;
+    }
+
+    /** beta, s */
+    double
+    stiffness_damping() const
+    {
+      return parameters.stiffness_damping;
+    }
+
+    bool
+    is_damped() const
+    {
+      return mass_damping() > 0 || stiffness_damping() > 0;
+    }
+
+    /** Where the origin of the mesh is placed, m. */
+    Vector3
+    placement_position() const
+    {
+      return parameters.position;
+    }
+
     /** $R_0$ of the placement. */
     const Matrix3 &
     placement_rotation() const
@@ -106,7 +231,11 @@ namespace ACF
       return initial_rotation;
     }
 
-    /** Nodal positions $x_a$ at the start, m. */
+    /** Nodal positions of the undeformed body as it is placed, m. */
+    NodalVector
+    placement() const;
+
+    /** Nodal positions $x_a$ at the start, with the displacement field, m. */
     NodalVector
     initial_positions() const;
 
@@ -114,26 +243,16 @@ namespace ACF
     NodalVector
     initial_velocities() const;
 
-    /** Functionals through which joints act on the body. */
-    const std::vector<NodalFunctional> &
-    joint_functionals() const
-    {
-      return functionals;
-    }
-
-    /**
-     * Makes a functional one of the joint_functionals(), unless it is.
-     * @return its index
-     */
-    unsigned int
-    add_joint_functional(const NodalFunctional &functional);
-
   private:
+    /** A field of the mesh's coordinates at the nodes, turned by $R_0$. */
+    NodalVector
+    nodal_field(const VectorField &field) const;
+
     BodyParameters parameters;
-    std::shared_ptr<const BodyDiscretization> finite_elements;
-    std::shared_ptr<const BodyOperators> constant_operators;
+    std::shared_ptr<ReferenceBody> reference_body;
     Matrix3 initial_rotation;
-    std::vector<NodalFunctional> functionals;
+    VectorField displacement;
+    VectorField velocity;
   };
 } // namespace ACF
 

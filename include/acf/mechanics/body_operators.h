@@ -34,6 +34,13 @@ namespace ACF
     /** Shear modulus, Pa. */
     double
     mu() const;
+
+    bool
+    operator==(const Material &other) const
+    {
+      return youngs_modulus == other.youngs_modulus &&
+             poissons_ratio == other.poissons_ratio && density == other.density;
+    }
   };
 
 

@@ -6,11 +6,15 @@
 
 #include <acf/base/types.h>
 
+#include <map>
 #include <set>
 
 namespace ACF
 {
   class BodyDiscretization;
+
+  /** A surface of a mesh. */
+  using Surface = std::set<types::boundary_id>;
 
   /**
    * A linear functional of a body's positions whose value is a vector,
@@ -33,11 +37,9 @@ namespace ACF
     void
     add_adjoint(const Vector3 &F, NodalVector &force) const;
 
+    /** Whether it has the same nodes and, up to round-off, weights. */
     bool
-    operator==(const NodalFunctional &other) const
-    {
-      return nodes == other.nodes && weights == other.weights;
-    }
+    is_close(const NodalFunctional &other) const;
   };
 
 
@@ -77,13 +79,11 @@ namespace ACF
   };
 
   SurfaceGeometry
-  surface_geometry(const BodyDiscretization &body,
-                   const std::set<types::boundary_id> &surface);
+  surface_geometry(const BodyDiscretization &body, const Surface &surface);
 
   /** Mean position: $s(x) = \frac1A \int x\, dA$, m. */
   NodalFunctional
-  surface_mean(const BodyDiscretization &body,
-               const std::set<types::boundary_id> &surface);
+  surface_mean(const BodyDiscretization &body, const Surface &surface);
 
   /**
    * First moment of the positions: $s(x) = \frac1A \int
@@ -91,7 +91,7 @@ namespace ACF
    */
   NodalFunctional
   surface_moment(const BodyDiscretization &body,
-                 const std::set<types::boundary_id> &surface,
+                 const Surface &surface,
                  const Vector3 &v);
 
   /**
@@ -103,8 +103,12 @@ namespace ACF
    */
   NodalFunctional
   surface_director(const BodyDiscretization &body,
-                   const std::set<types::boundary_id> &surface,
+                   const Surface &surface,
                    const Vector3 &direction);
+
+  /** $\int \phi_a N\, dA$ with the outward normal, m^2, of nodes a. */
+  std::map<unsigned int, Vector3>
+  surface_normals(const BodyDiscretization &body, const Surface &surface);
 
   /**
    * Position of a material point: $s(x) = \sum_a \phi_a(X) x_a$, m.

@@ -4,9 +4,8 @@
 #ifndef acf_mechanics_joints_h
 #define acf_mechanics_joints_h
 
-#include <acf/mechanics/body.h>
-
-#include <Eigen/Dense>
+#include <acf/base/time_function.h>
+#include <acf/mechanics/joint_side.h>
 
 namespace ACF
 {
@@ -15,17 +14,33 @@ namespace ACF
   {
     std::string name;
 
-    /** mean position, spherical, mean rotation, revolute or fixed. */
+    /** See add_parameters(). */
     std::string type = "spherical";
 
-    /** "BODY: SURFACE, ground". */
+    /** "BODY: SURFACE, BODY: SURFACE" or "BODY: SURFACE, ground". */
     std::string between;
 
     /** World directions or axes that are blocked, as text. */
     std::string directions;
 
-    /** World axis of a revolute joint. */
+    /** World axis of the types that have one. */
     Vector3 axis;
+
+    /** World direction of the joint's x axis; second axis of a universal. */
+    Vector3 cross_axis;
+
+    /** Joint axes left free: "y, rotation x". */
+    std::string free;
+
+    /** Whether a distance of the surfaces at the placement is kept. */
+    bool keep_offset = false;
+
+    /** Prescribed motions, expressions of time; empty: none. */
+    std::string angle;
+    std::string angular_velocity;
+    std::string displacement;
+    std::string position;
+    std::string length;
 
     void
     add_parameters(ParameterHandler &prm);
@@ -38,6 +53,21 @@ namespace ACF
     std::vector<Vector3>
     direction_vectors() const;
 
+    /** World directions of the joint's axes x, y, z at the placement. */
+    std::array<Vector3, dim>
+    joint_axes() const;
+
+    /** World directions and axes of blocked motions at the placement. */
+    std::vector<Vector3>
+    blocked_translations() const;
+
+    std::vector<Vector3>
+    blocked_rotations() const;
+
+    /** Whether a motion is prescribed in world axes, as three functions. */
+    bool
+    drives_the_ground() const;
+
     std::string
     section() const
     {
@@ -47,85 +77,165 @@ namespace ACF
 
 
 
-  /** A surface of a body, as model files name it: "BODY: SURFACE". */
-  struct SurfaceName
+  /** A prescribed motion: $u(t) = \sum_k c_k f_k(t)$ or its integral. */
+  class Drive
   {
-    std::string body;
-    std::string surface;
+  public:
+    /** @param motion $c\, u$ with the displacement or angle u */
+    void
+    add_motion(const double c, const TimeFunction &motion);
+
+    /** @param rate $c\, \dot u$; u(0) = 0 */
+    void
+    add_rate(const double c, const TimeFunction &rate);
+
+    bool
+    is_constant() const
+    {
+      return motions.empty() && integrals.empty();
+    }
+
+    double
+    value(const double t) const;
+
+    double
+    rate(const double t) const;
+
+  private:
+    std::vector<std::pair<double, TimeFunction>> motions;
+    std::vector<std::pair<double, TimeFunction>> rates;
+    std::vector<std::pair<double, TimeIntegral>> integrals;
   };
 
-  /**
-   * Splits "BODY: SURFACE".
-   * @throws InputError naming @p section and @p entry if it has another form
-   */
-  SurfaceName
-  parse_surface_name(const std::string &text,
-                     const std::string &section,
-                     const std::string &entry);
-
-  /**
-   * The body of a name.
-   * @throws InputError that names the bodies that exist
-   */
-  unsigned int
-  find_body(const std::vector<Body> &bodies,
-            const std::string &name,
-            const std::string &section,
-            const std::string &entry);
-
 
 
   /**
-   * A joint: integral constraints with multipliers,
-   * \f[ \Phi = \sum_p D_p s_p(u) - b = 0 \f]
-   * on values $s_p$ of surface functionals (paper Eq. (16)). The constraint
-   * forces on the body are $-\lambda^T D_p$ on each value. Rows that constrain
+   * A joint: integral constraints with multipliers (paper Sec. 4, Eq. (16)),
+   * \f[ \Phi_r = y_r(s) - o_r - u_r(t) = 0 \f]
+   * on functions $y_r$ of the values s of its markers, with constants $o_r$ and
+   * prescribed motions $u_r$. The forces on the markers are
+   * $-D^T \lambda$, $D = \partial y / \partial s$. Rows that constrain
    * positions are in m (multipliers in N), rows that constrain rotations in rad
-   * (multipliers in N m).
+   * (multipliers in N m). What it constrains, see make_joint().
    */
-  struct Joint
+  class Joint
   {
+  public:
+    /** One constraint. */
+    struct Row
+    {
+      MarkerFunction function;
+      double offset = 0;
+      Drive drive;
+    };
+
     std::string name;
 
-    /** Index of the body. */
-    unsigned int body = 0;
+    /** Section of the model file. */
+    std::string section;
 
-    /** Indices p of the functionals in Body::joint_functionals(). */
-    std::vector<unsigned int> functionals;
+    /** First and second side. */
+    std::array<JointSide, 2> sides;
 
-    /** Whether a functional is a mean position or a director or moment. */
-    std::vector<bool> is_mean_position;
+    /** Axes x, y, z of the joint at the placement, as unit vectors. */
+    std::array<Vector3, dim> axes;
 
-    /** $(D_1, D_2, ...)$, size n_rows x 3 functionals. */
-    Eigen::MatrixXd matrix;
-
-    /** b, size n_rows. */
-    Eigen::VectorXd right_hand_side;
+    MarkerSet markers;
+    std::vector<Row> rows;
 
     unsigned int
     n_constraints() const
     {
-      return matrix.rows();
+      return rows.size();
     }
+
+    /** Whether D is constant. */
+    bool
+    is_affine() const;
+
+    /** $\Phi$ for marker values, size n_constraints(). */
+    Eigen::VectorXd
+    residual(const double t, const Eigen::VectorXd &s) const;
+
+    /** D, size n_constraints() x size of s. */
+    Eigen::MatrixXd
+    jacobian(const Eigen::VectorXd &s) const;
+
+    /** $\dot u(t)$, size n_constraints(). */
+    Eigen::VectorXd
+    drive_rates(const double t) const;
+
+    /** $\sum_r \lambda_r\, \partial^2 y_r / \partial s^2$. */
+    Eigen::MatrixXd
+    geometric_stiffness(const Eigen::VectorXd &s,
+                        const Eigen::VectorXd &multipliers) const;
   };
 
   /**
-   * Makes a joint of a body to the ground and gives the body its functionals.
-   *
-   * Positions: the mean position of the surface keeps its value of the start in
-   * the given directions. Rotations blocked about one or three axes: the mean
-   * rotation of the surface,
-   * $\theta = (\mathrm{tr}(J) I - J)^{-1} \frac1A \int (X - \bar X) \times x$,
-   * keeps the value zero in these axes, which presumes small rotations about
-   * the others. Rotations blocked about two axes: the surface turns about the
-   * third axis e by any angle; either the director of e stays parallel to e, or
-   * the directors perpendicular to e stay perpendicular, whichever the surface
-   * resolves better.
+   * Makes a joint. Its axes are those of the world at the placement of the
+   * bodies, unless an axis is given, which is then its z axis. Blocked
+   * translations keep the mean positions of the two surfaces together. If all
+   * three are blocked, they are so in the world; otherwise the directions turn
+   * with the second side. Rotations blocked about one or three axes: the mean
+   * relative rotation about them,
+   * $\theta = (\mathrm{tr}(J) I - J)^{-1} \frac1A \int (X - \bar X) \times x$
+   * with the weights of the first side that is a body, seen from the other
+   * side, is zero; it is exact for small angles about the other axes. Rotations
+   * blocked about two axes: the third axis, as a direction of one side, stays
+   * perpendicular to two directions of the other one, for any angle about it.
    *
    * @throws InputError naming what is wrong and which bodies and surfaces exist
    */
   Joint
-  make_joint(const JointParameters &parameters, std::vector<Body> &bodies);
+  make_joint(const JointParameters &parameters,
+             const std::vector<Body> &bodies);
+
+  /**
+   * The angle by which the first side has turned about an axis relative to the
+   * second one since the placement, in (-pi, pi], rad.
+   */
+  MarkerFunction
+  relative_angle(MarkerSet &markers,
+                 const JointSide &first,
+                 const JointSide &second,
+                 const Vector3 &axis);
+
+  /**
+   * Mean relative rotation of two sides about an axis, rad, exact for small
+   * angles. @pre one side is a body
+   */
+  MarkerPolynomial
+  relative_rotation(MarkerSet &markers,
+                    const JointSide &first,
+                    const JointSide &second,
+                    const Vector3 &axis);
+
+  /**
+   * Distance of the mean positions along a direction that turns with the second
+   * side, from the second to the first, m. The ground lies where the first
+   * side is at the placement.
+   */
+  MarkerPolynomial
+  relative_displacement(MarkerSet &markers,
+                        const JointSide &first,
+                        const JointSide &second,
+                        const Vector3 &direction);
+
+  /** The two sides of the entry 'Between'. @throws InputError */
+  std::array<JointSide, 2>
+  parse_sides(const std::string &text,
+              const std::vector<Body> &bodies,
+              const std::string &section,
+              const std::string &entry = "Between");
+
+  /**
+   * Where the first side is relative to the second one, in world axes; zero if
+   * the second is the ground and at the placement.
+   */
+  MarkerExpression
+  relative_position(MarkerSet &markers,
+                    const JointSide &first,
+                    const JointSide &second);
 } // namespace ACF
 
 #endif

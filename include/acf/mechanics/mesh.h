@@ -66,6 +66,10 @@ namespace ACF
      */
     void
     check(const std::string &section) const;
+
+    /** Whether the same mesh results. */
+    bool
+    operator==(const MeshParameters &other) const;
   };
 
   /**

@@ -16,11 +16,11 @@
 namespace ACF
 {
   /**
-   * The factorisation of a body's shifted matrix K with what the joints need of
-   * it, all in the body's frame and so independent of its rotation (paper
-   * Eq. (32)): the columns $Y_{pj} = K^{-1} (w_p \otimes e_j)$ of the joint
-   * functionals and their compliance
-   * $C_{pi,qj} = (w_p \otimes e_i)^T Y_{qj}$.
+   * The factorisation of a body's shifted matrix K with what joints and force
+   * elements need of it, all in the body's frame and so independent of its
+   * rotation (paper Eq. (32)): the columns $Y_{pj} = K^{-1} (w_p \otimes e_j)$
+   * of the functionals and their compliance
+   * $C_{pi,qj} = (w_p \otimes e_i)^T Y_{qj}$. Identical bodies share it.
    */
   template <typename Number>
   class JointedFactorization
@@ -29,7 +29,7 @@ namespace ACF
     using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
     using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
 
-    JointedFactorization(const Body &body, const Number shift);
+    JointedFactorization(const ReferenceBody &body, const Number shift);
 
     ShiftedFactorization<Number> &
     factorization()
@@ -37,20 +37,26 @@ namespace ACF
       return factor;
     }
 
-    /** C, size 3 n x 3 n for n joint functionals. */
+    /** C, size 3 n x 3 n for n functionals of the reference body. */
     const Matrix &
     compliance() const
     {
       return joint_compliance;
     }
 
-    /** Values of the joint functionals of a vector, size 3 n. */
-    Vector
-    functional_values(const std::vector<Number> &x) const;
+    /** Value of a functional for a vector of size 3 n_nodes. */
+    Eigen::Matrix<Number, dim, 1>
+    functional_value(const unsigned int functional, const Number *x) const;
 
     /** $x \leftarrow x - Y F$ for forces F on the functionals, size 3 n. */
     void
-    subtract_columns(const Vector &F, std::vector<Number> &x) const;
+    subtract_columns(const Vector &F, Number *x) const;
+
+    std::size_t
+    size() const
+    {
+      return n_unknowns;
+    }
 
     std::size_t
     column_bytes() const
@@ -69,8 +75,8 @@ namespace ACF
 
 
   /**
-   * Keeps every factorisation that was ever needed: one per body and shift, in
-   * practice one per body and step size.
+   * Keeps every factorisation that was ever needed: one per reference
+   * body and shift, in practice one per kind of body and step size.
    */
   class FactorizationCache
   {
@@ -87,13 +93,13 @@ namespace ACF
     template <typename Number>
     JointedFactorization<Number> &
     find_or_factorize(
-      std::map<std::tuple<const Body *, double, double>,
+      std::map<std::tuple<const ReferenceBody *, double, double>,
                std::unique_ptr<JointedFactorization<Number>>> &factors,
       const Body &body,
       const Number shift,
       unsigned long &counter);
 
-    using Key = std::tuple<const Body *, double, double>;
+    using Key = std::tuple<const ReferenceBody *, double, double>;
 
     Statistics &statistics;
     std::map<Key, std::unique_ptr<JointedFactorization<double>>> real_factors;

@@ -5,7 +5,7 @@
 #define acf_solvers_stage_solver_h
 
 #include <acf/solvers/butcher_tableau.h>
-#include <acf/solvers/joint_schur_complement.h>
+#include <acf/solvers/coupled_system.h>
 
 #include <memory>
 
@@ -20,11 +20,13 @@ namespace ACF
   /**
    * Solves the linear system of a simplified Newton iteration for the stage
    * increments,
-   * \f[ (\tau^{-2} A_{RK}^{-2} \otimes M + I \otimes R A R^T) \Delta Z
-   *     + (I \otimes B^T) \Delta\Lambda = r, \qquad
+   * \f[ (\tau^{-2} A_{RK}^{-2} \otimes M + \tau^{-1} A_{RK}^{-1} \otimes C
+   *      + I \otimes K) \Delta Z + (I \otimes B^T) \Delta\Lambda = r, \qquad
    *     (I \otimes B) \Delta Z = g, \f]
    * or an approximation of it, with factorisations that depend on the step size
-   * only. The rotations are frozen by prepare().
+   * only. K is the stiffness R A R^T of the bodies and that of the markers, C
+   * the Rayleigh damping and that of the markers, M includes lumped masses.
+   * Rotations and markers are frozen by prepare().
    */
   class StageSolver
   {
@@ -36,7 +38,9 @@ namespace ACF
      * what the cache does not have.
      */
     virtual void
-    prepare(const double step_size, const std::vector<Matrix3> &rotations) = 0;
+    prepare(const double step_size,
+            const std::vector<Matrix3> &rotations,
+            const MarkerLinearization &linearization) = 0;
 
     /**
      * @param[in,out] stages r, replaced by $\Delta Z$, in the world frame
@@ -44,6 +48,14 @@ namespace ACF
      */
     virtual void
     solve(StageVector &stages, StageConstraints &constraints) = 0;
+
+    /**
+     * The same for r = 0, which needs no solves of the bodies.
+     * @param[out] stages $\Delta Z$
+     * @param[in,out] constraints g, replaced by $\Delta\Lambda$
+     */
+    virtual void
+    solve_constraints(StageVector &stages, StageConstraints &constraints) = 0;
   };
 
 
@@ -63,20 +75,31 @@ namespace ACF
 
     void
     prepare(const double step_size,
-            const std::vector<Matrix3> &rotations) override;
+            const std::vector<Matrix3> &rotations,
+            const MarkerLinearization &linearization) override;
 
     void
     solve(StageVector &stages, StageConstraints &constraints) override;
+
+    void
+    solve_constraints(StageVector &stages,
+                      StageConstraints &constraints) override;
 
   private:
     template <typename Number>
     void
     solve_component(const StageDiagonalization::Component &component,
-                    JointSchurComplement<Number> &schur_complement,
-                    const StageVector &stages,
+                    CoupledSystem<Number> &coupled_system,
+                    const StageVector *stages,
                     const StageConstraints &constraints,
                     StageVector &stage_increments,
                     StageConstraints &constraint_increments);
+
+    void
+    solve_all(const StageVector *stages,
+              const StageConstraints &constraints,
+              StageVector &stage_increments,
+              StageConstraints &constraint_increments);
 
     const MultibodySystem &system;
     const StageDiagonalization diagonalization;
@@ -85,8 +108,8 @@ namespace ACF
     std::vector<Matrix3> rotations;
 
     /** One of the two for each component, depending on its eigenvalue. */
-    std::vector<std::unique_ptr<JointSchurComplement<double>>> real_systems;
-    std::vector<std::unique_ptr<JointSchurComplement<std::complex<double>>>>
+    std::vector<std::unique_ptr<CoupledSystem<double>>> real_systems;
+    std::vector<std::unique_ptr<CoupledSystem<std::complex<double>>>>
       complex_systems;
   };
 
@@ -109,10 +132,15 @@ namespace ACF
 
     void
     prepare(const double step_size,
-            const std::vector<Matrix3> &rotations) override;
+            const std::vector<Matrix3> &rotations,
+            const MarkerLinearization &linearization) override;
 
     void
     solve(StageVector &stages, StageConstraints &constraints) override;
+
+    void
+    solve_constraints(StageVector &stages,
+                      StageConstraints &constraints) override;
 
   private:
     const MultibodySystem &system;
@@ -121,7 +149,13 @@ namespace ACF
     Statistics &statistics;
     std::vector<Matrix3> rotations;
 
-    std::vector<std::unique_ptr<JointSchurComplement<double>>> systems;
+    void
+    solve_all(const StageVector *stages,
+              const StageConstraints &constraints,
+              StageVector &stage_increments,
+              StageConstraints &constraint_increments);
+
+    std::vector<std::unique_ptr<CoupledSystem<double>>> systems;
   };
 } // namespace ACF
 

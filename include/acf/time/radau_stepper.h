@@ -63,8 +63,8 @@ namespace ACF
   /**
    * Radau IIA for the index-3 equations of a multibody system. With
    * $Z_i = U_i - u_n - c_i \tau v_n$ the stages satisfy
-   * \f[ \tau^{-2} (A_{RK}^{-2} \otimes M) Z + F(Z) + (I \otimes B^T) \Lambda =
-   *     P, \qquad B U_i = b, \f]
+   * \f[ \tau^{-2} (A_{RK}^{-2} \otimes M) Z + F(U, V) + B(U)^T \Lambda = P,
+   *     \qquad \Phi(U_i, t_n + c_i \tau) = 0, \f]
    * the velocities are $V_i = v_n + \tau^{-1} \sum_j (A_{RK}^{-1})_{ij} Z_j$
    * and the last stage ends the step. The stage equations are solved by a
    * simplified Newton iteration whose linear systems are those of a
@@ -110,6 +110,10 @@ namespace ACF
     void
     predict(const SystemState &state, const double step_size);
 
+    /** Freezes rotations and markers at the mean of the predicted stages. */
+    void
+    prepare(const SystemState &state);
+
     std::vector<Matrix3>
     predicted_rotations(const SystemState &state) const;
 
@@ -118,6 +122,35 @@ namespace ACF
                       StageVector &residual,
                       StageConstraints &constraint_residual,
                       std::string &failure);
+
+    /** Residual of a body at a stage without the forces on markers. */
+    bool
+    assemble_body_residual(const SystemState &state,
+                           const unsigned int stage,
+                           const unsigned int body,
+                           const NodalVector &position,
+                           const NodalVector &velocity,
+                           const NodalVector &acceleration,
+                           NodalVector &residual) const;
+
+    /**
+     * Corrects the positions of converged stages until nonlinear constraints
+     * hold up to round-off, without solves of bodies.
+     */
+    void
+    correct_constraints(const SystemState &state);
+
+    NodalVector
+    stage_velocity(const SystemState &state,
+                   const unsigned int stage,
+                   const unsigned int body) const;
+
+    /** Law values of force elements, continuous from an earlier state. */
+    void
+    update_laws(SystemState &state, const SystemState &before) const;
+
+    double
+    stage_time(const SystemState &state, const unsigned int stage) const;
 
     double
     increment_norm(const StageVector &increment) const;

@@ -52,11 +52,14 @@ namespace ACF
    * Multipliers are known for the stages of a step; those at the start of the
    * simulation are extrapolated from the first step.
    *
-   * @throws SimulationError if a step fails after all halvings; the observers
-   * have then seen everything up to the last accepted step
+   * @param state at the start, see initial_state()
+   * @throws SimulationError if a step fails after all halvings, or if repeated
+   * constraints contradict each other; the observers have then seen everything
+   * up to the last accepted step
    */
   void
   run_time_loop(const MultibodySystem &system,
+                SystemState state,
                 const TimeParameters &parameters,
                 const std::vector<Observer *> &observers,
                 Progress &progress,

@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_solvers_coupled_system_h
+#define acf_solvers_coupled_system_h
+
+#include <acf/mechanics/multibody_system.h>
+#include <acf/solvers/factorization_cache.h>
+
+#include <Eigen/SparseLU>
+
+namespace ACF
+{
+  /** The matrix of a body: $K = \text{scale}\ (\text{shift}\, M + A)$. */
+  template <typename Number>
+  struct BodyMatrix
+  {
+    Number shift;
+    Number scale;
+  };
+
+  /**
+   * Coefficients of a linear system on the markers,
+   * $H = \text{mass}\, M_L + \text{damping}\, C + \text{stiffness}\, G$.
+   */
+  template <typename Number>
+  struct MarkerCoefficients
+  {
+    Number mass;
+    Number damping;
+    Number stiffness;
+  };
+
+
+
+  /** A change $U B U^T$ of a body's matrix, in its frame. */
+  struct LowRankChange
+  {
+    /** U, unknowns times rank; the rank may be 0. */
+    Eigen::MatrixXd columns;
+
+    /** B, invertible. */
+    Eigen::MatrixXd coefficients;
+  };
+
+
+
+  /**
+   * Solves the equations of all bodies coupled by joints, force elements and
+   * lumped masses, in the bodies' frames,
+   * \f[ K_b w_b + S_b^T R_b^T \phi_b = r_b, \qquad \phi = H s + D^T \mu, \qquad
+   *     D s = g, \qquad s_b = R_b S_b w_b. \f]
+   * With $w = K^{-1} r - Y R^T \phi$ and the compliances $C = S Y$ only a small
+   * sparse system in the marker values s and the multipliers remains,
+   * \f[ s + R C R^T (H s + D^T \mu) = R S K^{-1} r, \qquad
+   *     D s - \epsilon E \mu = g, \f]
+   * where E serves repeated constraints only (see MarkerLinearization). Its
+   * cost grows with the number of bodies like that of their joints' graph:
+   * linearly for chains. Without H it is the Schur complement of paper
+   * Eq. (32). Without markers nothing is done for it.
+   *
+   * Matrices $K_b + U B U^T$ add the unknowns $\zeta = B U^T w$ to the small
+   * system, with $Y_U = K^{-1} U$,
+   * \f[ s + R C R^T \phi + R S Y_U \zeta = R S K^{-1} r, \qquad
+   *     (R S Y_U)^T \phi + (B^{-1} + U^T Y_U)\, \zeta = U^T K^{-1} r. \f]
+   */
+  template <typename Number>
+  class CoupledSystem
+  {
+  public:
+    using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
+
+    CoupledSystem(const MultibodySystem &system,
+                  FactorizationCache &cache,
+                  Statistics &statistics);
+
+    /**
+     * Factorises what the cache does not have, and the system of the markers.
+     * @param matrices of each body
+     * @param rotations $R_b$ of each body
+     * @param changes of each body's matrix, or nothing; takes one solve per
+     * column
+     * @throws SimulationError if the system of the markers is singular
+     */
+    void
+    prepare(const std::vector<BodyMatrix<Number>> &matrices,
+            const std::vector<Matrix3> &rotations,
+            const MarkerLinearization &linearization,
+            const MarkerCoefficients<Number> &coefficients,
+            const std::vector<LowRankChange> &changes = {});
+
+    /** Right-hand side $r_b$ or solution $w_b$ of a body, in its frame. */
+    Number *
+    body(const unsigned int b)
+    {
+      return values.data() + offsets[b];
+    }
+
+    /**
+     * Replaces the $r_b$ by the $w_b$.
+     * @param g right-hand side of the constraints
+     * @return $\mu$
+     */
+    Vector
+    solve(const Vector &g);
+
+    /** The same for $r_b = 0$: no solves with factors of the bodies. */
+    Vector
+    solve_constraints(const Vector &g);
+
+  private:
+    using Matrix   = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
+    using Triplets = std::vector<Eigen::Triplet<Number>>;
+
+    /**
+     * A LowRankChange with columns U of length one. Its unknowns are
+     * $\zeta / \kappa$ with the size $\kappa$ of B, so that their rows are in m
+     * as those of the markers.
+     */
+    struct Change
+    {
+      /** Number of the first unknown of the small system. */
+      unsigned int first;
+
+      Matrix columns;
+
+      /** $Y_U$ */
+      Matrix solutions;
+
+      /** $\kappa (B^{-1} + U^T Y_U)$ */
+      Matrix matrix;
+
+      /** $R S Y_U$ */
+      Matrix marker_values;
+
+      double size;
+    };
+
+    void
+    group_bodies();
+
+    /** I + C H and C D^T. @return the largest compliance */
+    double
+    add_compliances(const Eigen::SparseMatrix<Number> &H_transposed,
+                    Triplets &triplets) const;
+
+    void
+    prepare_changes(const std::vector<LowRankChange> &terms);
+
+    void
+    add_changes(const Eigen::SparseMatrix<Number> &H_transposed,
+                Triplets &triplets) const;
+
+    void
+    solve_bodies();
+
+    /** R S w of the bodies' vectors. */
+    void
+    evaluate_markers(const unsigned int body,
+                     const Number *w,
+                     Eigen::Ref<Vector> s) const;
+
+    /**
+     * Finishes with what the uncoupled bodies give to the first and the last
+     * rows of the small system.
+     */
+    Vector
+    couple(const Vector &uncoupled, const Vector &g, const Vector &changes);
+
+    const MultibodySystem &system;
+    FactorizationCache &cache;
+    Statistics &statistics;
+
+    std::vector<JointedFactorization<Number> *> factors;
+    std::vector<Number> scales;
+    std::vector<Eigen::Matrix3d> rotations;
+
+    /** Right-hand sides, those with the same factor one after the other. */
+    std::vector<Number> values;
+    std::vector<std::size_t> offsets;
+    std::vector<std::vector<unsigned int>> groups;
+
+    Eigen::SparseMatrix<Number> H;
+    Eigen::SparseMatrix<Number> D;
+    Eigen::SparseLU<Eigen::SparseMatrix<Number>> marker_system;
+    bool analyzed = false;
+
+    /** Per body, if there are any. */
+    std::vector<Change> changes;
+    unsigned int n_change_unknowns = 0;
+  };
+} // namespace ACF
+
+#endif

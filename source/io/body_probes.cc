@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+#include <acf/io/probe_types.h>
+
+#include <deal.II/base/numbers.h>
+
+#include <cmath>
+#include <optional>
+
+namespace ACF
+{
+  namespace
+  {
+    // A linear functional of a body.
+    struct ProbeEnd
+    {
+      unsigned int body;
+      NodalFunctional functional;
+
+      Vector3
+      position(const SystemState &state) const
+      {
+        return functional(state.positions[body]);
+      }
+    };
+
+
+
+    // Mean of a surface, or a material point: its position or its velocity.
+    class FunctionalProbe : public Probe
+    {
+    public:
+      FunctionalProbe(const unsigned int body,
+                      const NodalFunctional &functional,
+                      const bool velocity)
+        : body(body)
+        , functional(functional)
+        , velocity(velocity)
+      {}
+
+      std::vector<std::string>
+      columns() const override
+      {
+        return vector_columns(velocity ? "m/s" : "m");
+      }
+
+      std::vector<double>
+      evaluate(const SystemState &state) override
+      {
+        return components(functional(velocity ? state.velocities[body]
+                                              : state.positions[body]));
+      }
+
+    private:
+      const unsigned int body;
+      const NodalFunctional functional;
+      const bool velocity;
+    };
+
+
+
+    // Angle of the line between two surfaces and distance of a material point
+    // from it, in the plane perpendicular to a world axis.
+    class ChordProbe : public Probe
+    {
+    public:
+      ChordProbe(const ProbeEnd &from,
+                 const ProbeEnd &to,
+                 const std::optional<ProbeEnd> &point,
+                 const unsigned int axis)
+        : from(from)
+        , to(to)
+        , point(point)
+        , first((axis + 1) % dim)
+        , second((axis + 2) % dim)
+      {}
+
+      std::vector<std::string>
+      columns() const override
+      {
+        if (point)
+          return {"angle [rad]", "deflection [m]"};
+        return {"angle [rad]"};
+      }
+
+      std::vector<double>
+      evaluate(const SystemState &state) override
+      {
+        const Vector3 start  = from.position(state);
+        const Vector3 chord  = to.position(state) - start;
+        const double wrapped = std::atan2(chord[second], chord[first]);
+        if (n_evaluations++ == 0)
+          angle = wrapped;
+        else // the branch nearest to the angle before
+          angle += std::remainder(wrapped - angle, 2 * numbers::PI);
+
+        if (!point)
+          return {angle};
+        const Vector3 arm = point->position(state) - start;
+        return {angle,
+                std::cos(wrapped) * arm[second] -
+                  std::sin(wrapped) * arm[first]};
+      }
+
+    private:
+      const ProbeEnd from;
+      const ProbeEnd to;
+      const std::optional<ProbeEnd> point;
+      const unsigned int first;
+      const unsigned int second;
+      unsigned long n_evaluations = 0;
+      double angle                = 0;
+    };
+
+
+
+    // Change of length of the line between two surfaces, and displacement of a
+    // material point in the frame of that line and an axis of the body: along
+    // the line, along axis x line, and along the third direction.
+    class ChordFrameProbe : public Probe
+    {
+    public:
+      ChordFrameProbe(const MultibodySystem &system,
+                      const ProbeEnd &from,
+                      const ProbeEnd &to,
+                      const ProbeEnd &point,
+                      const unsigned int axis)
+        : body(system.bodies()[from.body])
+        , from(from)
+        , to(to)
+        , point(point)
+      {
+        start_axis[axis] = 1;
+        SystemState start;
+        start.positions = system.placement();
+        reference       = coordinates(start, length);
+      }
+
+      std::vector<std::string>
+      columns() const override
+      {
+        return {"stretch [m]", "along [m]", "across [m]", "normal [m]"};
+      }
+
+      std::vector<double>
+      evaluate(const SystemState &state) override
+      {
+        double now                 = 0;
+        const Vector3 displacement = coordinates(state, now) - reference;
+        return {now - length,
+                displacement[0],
+                displacement[1],
+                displacement[2]};
+      }
+
+    private:
+      // Of the point in the frame.
+      Vector3
+      coordinates(const SystemState &state, double &chord_length) const
+      {
+        const Vector3 start = from.position(state);
+        Vector3 along       = to.position(state) - start;
+        chord_length        = along.norm();
+        along /= chord_length;
+        const auto frame =
+          body_rotation(mean_deformation_gradient(body.operators(),
+                                                  state.positions[from.body]),
+                        body.rotation_measure());
+        const Vector3 axis =
+          frame->rotation * (transpose(body.placement_rotation()) * start_axis);
+        Vector3 across = cross_product_3d(axis, along);
+        across /= across.norm();
+        const Vector3 arm = point.position(state) - start;
+        return Vector3(
+          {arm * along, arm * across, arm * cross_product_3d(along, across)});
+      }
+
+      const Body &body;
+      const ProbeEnd from;
+      const ProbeEnd to;
+      const ProbeEnd point;
+      Vector3 start_axis;
+      Vector3 reference;
+      double length = 0;
+    };
+
+
+
+    ProbeEnd
+    surface_end(const MultibodySystem &system,
+                const ProbeParameters &parameters,
+                const std::string &text,
+                const std::string &entry)
+    {
+      const SurfaceName name =
+        parse_surface_name(text, parameters.section(), entry);
+      const unsigned int b =
+        find_body(system.bodies(), name.body, parameters.section(), entry);
+      const BodyDiscretization &body = system.bodies()[b].discretization();
+      return {b,
+              surface_mean(body,
+                           body.mesh().surface(name.surface,
+                                               parameters.section(),
+                                               entry))};
+    }
+
+
+
+    NodalFunctional
+    point_functional(const Body &body, const ProbeParameters &parameters)
+    {
+      try
+        {
+          return material_point(body.discretization(),
+                                Point<dim>(parameters.point[0],
+                                           parameters.point[1],
+                                           parameters.point[2]));
+        }
+      catch (const SimulationError &error)
+        {
+          throw InputError(parameters.section(),
+                           "Point",
+                           error.what(),
+                           "a point of the body '" + body.name() +
+                             "' in the coordinates of its mesh");
+        }
+    }
+  } // namespace
+
+
+
+  std::unique_ptr<Probe>
+  make_body_probe(const ProbeParameters &parameters,
+                  const MultibodySystem &system)
+  {
+    const std::string &type = parameters.type;
+    const bool velocity     = type.find("velocity") != std::string::npos;
+    if (type == "mean position" || type == "mean velocity")
+      {
+        const ProbeEnd end =
+          surface_end(system, parameters, parameters.of, "Of");
+        return std::make_unique<FunctionalProbe>(end.body,
+                                                 end.functional,
+                                                 velocity);
+      }
+    if (type == "point position" || type == "point velocity")
+      {
+        const unsigned int b =
+          find_body(system.bodies(), parameters.of, parameters.section(), "Of");
+        return std::make_unique<FunctionalProbe>(
+          b, point_functional(system.bodies()[b], parameters), velocity);
+      }
+
+    const ProbeEnd from =
+      surface_end(system, parameters, parameters.from, "From");
+    const ProbeEnd to = surface_end(system, parameters, parameters.to, "To");
+    const unsigned int axis = parameters.axis[0] - 'x';
+    std::optional<ProbeEnd> point;
+    if (!parameters.point.empty())
+      point =
+        ProbeEnd{from.body,
+                 point_functional(system.bodies()[from.body], parameters)};
+    if (type == "chord")
+      return std::make_unique<ChordProbe>(from, to, point, axis);
+    return std::make_unique<ChordFrameProbe>(system, from, to, *point, axis);
+  }
+} // namespace ACF

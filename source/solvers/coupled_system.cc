@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+#include <acf/solvers/coupled_system.h>
+
+#include <algorithm>
+
+namespace ACF
+{
+  template <typename Number>
+  CoupledSystem<Number>::CoupledSystem(const MultibodySystem &system,
+                                       FactorizationCache &cache,
+                                       Statistics &statistics)
+    : system(system)
+    , cache(cache)
+    , statistics(statistics)
+    , offsets(system.bodies().size())
+  {
+    std::size_t n = 0;
+    for (const Body &body : system.bodies())
+      n += body.operators().n_unknowns();
+    values.resize(n);
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::group_bodies()
+  {
+    groups.clear();
+    for (unsigned int b = 0; b < factors.size(); ++b)
+      {
+        const auto group =
+          std::find_if(groups.begin(), groups.end(), [&](const auto &other) {
+            return factors[other[0]] == factors[b];
+          });
+        if (group == groups.end())
+          groups.push_back({b});
+        else
+          group->push_back(b);
+      }
+    std::size_t offset = 0;
+    for (const auto &group : groups)
+      for (const unsigned int b : group)
+        {
+          offsets[b] = offset;
+          offset += factors[b]->size();
+        }
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::prepare(
+    const std::vector<BodyMatrix<Number>> &matrices,
+    const std::vector<Matrix3> &body_rotations,
+    const MarkerLinearization &linearization,
+    const MarkerCoefficients<Number> &coefficients,
+    const std::vector<LowRankChange> &terms)
+  {
+    const unsigned int n_bodies = system.bodies().size();
+    factors.resize(n_bodies);
+    scales.resize(n_bodies);
+    rotations.resize(n_bodies);
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      {
+        factors[b] = &cache.get(system.bodies()[b], matrices[b].shift);
+        scales[b]  = matrices[b].scale;
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            rotations[b](i, j) = body_rotations[b][i][j];
+      }
+    group_bodies();
+    const unsigned int n = system.n_marker_values();
+    const unsigned int m = system.n_constraints();
+    prepare_changes(terms);
+    if (n + n_change_unknowns == 0)
+      return;
+
+    // H and D, with one pattern for all times
+    Triplets triplets;
+    const auto append = [&](const MarkerLinearization::Triplets &entries,
+                            const Number factor) {
+      for (const auto &entry : entries)
+        triplets.emplace_back(entry.row(), entry.col(), factor * entry.value());
+    };
+    append(linearization.stiffness, coefficients.stiffness);
+    append(linearization.damping, coefficients.damping);
+    append(linearization.mass, coefficients.mass);
+    H.resize(n, n);
+    H.setFromTriplets(triplets.begin(), triplets.end());
+    triplets.clear();
+    append(linearization.constraints, Number(1));
+    D.resize(m, n);
+    D.setFromTriplets(triplets.begin(), triplets.end());
+    const Eigen::SparseMatrix<Number> H_transposed = H.transpose();
+
+    // (I + C H) s + C D^T mu = ..., D s - eps E mu = ...
+    for (auto &triplet : triplets)
+      triplet = Eigen::Triplet<Number>(n + triplet.row(),
+                                       triplet.col(),
+                                       triplet.value());
+    const double compliance = add_compliances(H_transposed, triplets);
+    for (const auto &entry : linearization.redundancy)
+      triplets.emplace_back(n + entry.row(),
+                            n + entry.col(),
+                            -compliance * entry.value());
+    add_changes(H_transposed, triplets);
+
+    const unsigned int n_unknowns = n + m + n_change_unknowns;
+    Eigen::SparseMatrix<Number> matrix(n_unknowns, n_unknowns);
+    matrix.setFromTriplets(triplets.begin(), triplets.end());
+    // without changes the pattern is that of the mechanism
+    if (!analyzed || !changes.empty())
+      marker_system.analyzePattern(matrix);
+    analyzed = changes.empty();
+    marker_system.factorize(matrix);
+    ++statistics.marker_factorizations;
+    if (marker_system.info() != Eigen::Success)
+      throw SimulationError("The equations of the joints are singular: " +
+                            marker_system.lastErrorMessage());
+  }
+
+
+
+  template <typename Number>
+  double
+  CoupledSystem<Number>::add_compliances(
+    const Eigen::SparseMatrix<Number> &H_transposed,
+    Triplets &triplets) const
+  {
+    using Iterator = typename Eigen::SparseMatrix<Number>::InnerIterator;
+
+    const unsigned int n = system.n_marker_values();
+    for (unsigned int i = 0; i < n; ++i)
+      triplets.emplace_back(i, i, Number(1));
+    double compliance = 0;
+    for (unsigned int b = 0; b < factors.size(); ++b)
+      {
+        const auto &markers      = system.body_markers(b);
+        const unsigned int first = dim * system.first_marker(b);
+        for (unsigned int q = 0; q < markers.size(); ++q)
+          for (unsigned int p = 0; p < markers.size(); ++p)
+            {
+              const Eigen::Matrix<Number, dim, dim> C =
+                rotations[b] *
+                factors[b]->compliance().template block<dim, dim>(
+                  dim * markers[p], dim * markers[q]) *
+                rotations[b].transpose() / scales[b];
+              compliance = std::max(compliance, C.cwiseAbs().maxCoeff());
+              for (unsigned int j = 0; j < dim; ++j)
+                {
+                  const unsigned int k = first + dim * q + j;
+                  const auto add_row   = [&](const auto &columns,
+                                           const unsigned int shift) {
+                    for (Iterator entry(columns, k); entry; ++entry)
+                      for (unsigned int i = 0; i < dim; ++i)
+                        triplets.emplace_back(first + dim * p + i,
+                                              shift + entry.row(),
+                                              C(i, j) * entry.value());
+                  };
+                  // columns of H^T and D are rows of H and D^T
+                  add_row(H_transposed, 0);
+                  add_row(D, n);
+                }
+            }
+      }
+    return compliance;
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::prepare_changes(
+    const std::vector<LowRankChange> &terms)
+  {
+    changes.clear();
+    n_change_unknowns = 0;
+    if (std::all_of(terms.begin(), terms.end(), [](const auto &term) {
+          return term.columns.cols() == 0;
+        }))
+      return;
+
+    const PhaseTimer timer(statistics, "solves");
+    const unsigned int first =
+      system.n_marker_values() + system.n_constraints();
+    changes.resize(terms.size());
+    for (unsigned int b = 0; b < terms.size(); ++b)
+      {
+        Change &change          = changes[b];
+        const unsigned int rank = terms[b].columns.cols();
+        change.first            = first + n_change_unknowns;
+        n_change_unknowns += rank;
+        change.marker_values.resize(dim * system.body_markers(b).size(), rank);
+        if (rank == 0)
+          continue;
+
+        // columns of U may have different units
+        const Eigen::VectorXd norms = terms[b].columns.colwise().norm();
+        const Eigen::MatrixXd B =
+          norms.asDiagonal() * terms[b].coefficients * norms.asDiagonal();
+        change.size    = B.cwiseAbs().maxCoeff();
+        change.columns = (terms[b].columns * norms.cwiseInverse().asDiagonal())
+                           .template cast<Number>();
+        change.solutions = change.columns;
+        factors[b]->factorization().solve(change.solutions.data(), rank);
+        change.solutions /= scales[b];
+        change.matrix = change.columns.transpose() * change.solutions;
+        change.matrix += B.inverse().template cast<Number>();
+        change.matrix *= change.size;
+        for (unsigned int j = 0; j < rank; ++j)
+          {
+            Vector s(change.marker_values.rows());
+            evaluate_markers(b, change.solutions.col(j).data(), s);
+            change.marker_values.col(j) = s;
+          }
+      }
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::add_changes(
+    const Eigen::SparseMatrix<Number> &H_transposed,
+    Triplets &triplets) const
+  {
+    using Iterator = typename Eigen::SparseMatrix<Number>::InnerIterator;
+
+    const unsigned int n = system.n_marker_values();
+    for (unsigned int b = 0; b < changes.size(); ++b)
+      {
+        const Change &change     = changes[b];
+        const unsigned int first = dim * system.first_marker(b);
+        for (unsigned int j = 0; j < change.columns.cols(); ++j)
+          {
+            const unsigned int row = change.first + j;
+            for (unsigned int i = 0; i < change.columns.cols(); ++i)
+              triplets.emplace_back(row, change.first + i, change.matrix(j, i));
+            for (unsigned int k = 0; k < change.marker_values.rows(); ++k)
+              {
+                const Number value = change.marker_values(k, j);
+                triplets.emplace_back(first + k, row, change.size * value);
+                for (Iterator entry(H_transposed, first + k); entry; ++entry)
+                  triplets.emplace_back(row,
+                                        entry.row(),
+                                        value * entry.value());
+                for (Iterator entry(D, first + k); entry; ++entry)
+                  triplets.emplace_back(row,
+                                        n + entry.row(),
+                                        value * entry.value());
+              }
+          }
+      }
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::solve_bodies()
+  {
+    const PhaseTimer timer(statistics, "solves");
+    for (const auto &group : groups)
+      {
+        factors[group[0]]->factorization().solve(body(group[0]), group.size());
+        for (const unsigned int b : group)
+          if (scales[b] != Number(1))
+            for (std::size_t k = 0; k < factors[b]->size(); ++k)
+              body(b)[k] /= scales[b];
+      }
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::evaluate_markers(const unsigned int b,
+                                          const Number *w,
+                                          Eigen::Ref<Vector> s) const
+  {
+    const auto &markers = system.body_markers(b);
+    for (unsigned int p = 0; p < markers.size(); ++p)
+      s.template segment<dim>(dim * p) =
+        rotations[b] * factors[b]->functional_value(markers[p], w);
+  }
+
+
+
+  template <typename Number>
+  typename CoupledSystem<Number>::Vector
+  CoupledSystem<Number>::couple(const Vector &uncoupled,
+                                const Vector &g,
+                                const Vector &change_values)
+  {
+    const unsigned int n = system.n_marker_values();
+    Vector rhs(n + g.size() + n_change_unknowns);
+    rhs << uncoupled, g, change_values;
+    const Vector solution = marker_system.solve(rhs);
+    const Vector mu       = solution.segment(n, g.size());
+    const Vector phi      = H * solution.head(n) + D.transpose() * mu;
+
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        const auto &markers = system.body_markers(b);
+        if (!markers.empty())
+          {
+            Vector F = Vector::Zero(factors[b]->compliance().rows());
+            for (unsigned int p = 0; p < markers.size(); ++p)
+              F.template segment<dim>(dim * markers[p]) =
+                rotations[b].transpose() *
+                phi.template segment<dim>(dim * (system.first_marker(b) + p)) /
+                scales[b];
+            factors[b]->subtract_columns(F, body(b));
+          }
+        if (!changes.empty() && changes[b].columns.cols() > 0)
+          Eigen::Map<Vector>(body(b), factors[b]->size()) -=
+            changes[b].solutions *
+            (changes[b].size *
+             solution.segment(changes[b].first, changes[b].columns.cols()));
+      }
+    return mu;
+  }
+
+
+
+  template <typename Number>
+  typename CoupledSystem<Number>::Vector
+  CoupledSystem<Number>::solve(const Vector &g)
+  {
+    solve_bodies();
+    if (system.n_marker_values() + n_change_unknowns == 0)
+      return g;
+    Vector uncoupled(system.n_marker_values());
+    Vector change_values(n_change_unknowns);
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        evaluate_markers(b,
+                         body(b),
+                         uncoupled.segment(dim * system.first_marker(b),
+                                           dim *
+                                             system.body_markers(b).size()));
+        if (!changes.empty() && changes[b].columns.cols() > 0)
+          change_values.segment(changes[b].first - uncoupled.size() - g.size(),
+                                changes[b].columns.cols()) =
+            changes[b].columns.transpose() *
+            Eigen::Map<Vector>(body(b), factors[b]->size());
+      }
+    return couple(uncoupled, g, change_values);
+  }
+
+
+
+  template <typename Number>
+  typename CoupledSystem<Number>::Vector
+  CoupledSystem<Number>::solve_constraints(const Vector &g)
+  {
+    std::fill(values.begin(), values.end(), Number(0));
+    if (system.n_marker_values() == 0)
+      return g;
+    return couple(Vector::Zero(system.n_marker_values()),
+                  g,
+                  Vector::Zero(n_change_unknowns));
+  }
+
+
+
+  template class CoupledSystem<double>;
+  template class CoupledSystem<std::complex<double>>;
+} // namespace ACF

@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/reduced_strain_tangent.h>
+#include <acf/solvers/tangent_system.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace ACF
+{
+  namespace
+  {
+    // y_a = R x_a of all nodes
+    template <typename Source, typename Target>
+    void
+    rotate(const Matrix3 &R, const Source &x, const std::size_t n, Target &&y)
+    {
+      for (std::size_t a = 0; a < n / dim; ++a)
+        {
+          Vector3 x_a;
+          for (unsigned int i = 0; i < dim; ++i)
+            x_a[i] = x[dim * a + i];
+          const Vector3 y_a = R * x_a;
+          for (unsigned int i = 0; i < dim; ++i)
+            y[dim * a + i] = y_a[i];
+        }
+    }
+  } // namespace
+
+
+
+  TangentSystem::TangentSystem(const MultibodySystem &system,
+                               Statistics &statistics)
+    : system(system)
+    , statistics(statistics)
+  {}
+
+
+
+  bool
+  TangentSystem::linearize(const SystemState &state, const double load_factor)
+  {
+    rotations.clear();
+    changes.clear();
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        const Body &body = system.bodies()[b];
+        auto tangent     = reduced_strain_tangent(body.operators(),
+                                              body.rotation_measure(),
+                                              state.positions[b]);
+        if (!tangent)
+          return false;
+        rotations.push_back(tangent->rotation);
+        changes.push_back({std::move(tangent->columns), tangent->coefficients});
+      }
+    const unsigned int n = system.n_marker_values();
+    linearization        = system.linearize(state.time,
+                                     system.marker_values(state.positions),
+                                     Eigen::VectorXd::Zero(n),
+                                     state.multipliers,
+                                     state.law_values,
+                                     load_factor);
+    G.resize(n, n);
+    G.setFromTriplets(linearization.stiffness.begin(),
+                      linearization.stiffness.end());
+    lumped_mass.resize(n, n);
+    lumped_mass.setFromTriplets(linearization.mass.begin(),
+                                linearization.mass.end());
+    return true;
+  }
+
+
+
+  void
+  TangentSystem::add_marker_product(const Eigen::SparseMatrix<double> &N,
+                                    const SystemVector &x,
+                                    SystemVector &y) const
+  {
+    if (N.nonZeros() == 0)
+      return;
+    const Eigen::VectorXd F = N * system.marker_values(x);
+    for (unsigned int b = 0; b < y.size(); ++b)
+      system.add_marker_forces(b, F, y[b]);
+  }
+
+
+
+  void
+  TangentSystem::apply_stiffness(SystemVector &y, const SystemVector &x) const
+  {
+    for (unsigned int b = 0; b < x.size(); ++b)
+      {
+        const std::size_t n = x[b].size();
+        NodalVector local(n), product(n);
+        rotate(transpose(rotations[b]), x[b], n, local);
+        system.bodies()[b].operators().stiffness_matrix.vmult(product, local);
+        const LowRankChange &change = changes[b];
+        if (change.columns.cols() > 0)
+          {
+            const Eigen::Map<const Eigen::VectorXd> w(local.begin(), n);
+            Eigen::Map<Eigen::VectorXd>(product.begin(), n) +=
+              change.columns *
+              (change.coefficients * (change.columns.transpose() * w));
+          }
+        rotate(rotations[b], product, n, y[b]);
+      }
+    add_marker_product(G, x, y);
+  }
+
+
+
+  void
+  TangentSystem::apply_mass(SystemVector &y, const SystemVector &x) const
+  {
+    for (unsigned int b = 0; b < x.size(); ++b)
+      system.bodies()[b].operators().mass_matrix.vmult(y[b], x[b]);
+    add_marker_product(lumped_mass, x, y);
+  }
+
+
+
+  void
+  TangentSystem::factorize(const double shift)
+  {
+    if (shift != factor_shift)
+      {
+        coupled_system.reset();
+        cache = std::make_unique<FactorizationCache>(statistics);
+        coupled_system =
+          std::make_unique<CoupledSystem<double>>(system, *cache, statistics);
+        factor_shift = shift;
+      }
+    coupled_system->prepare(
+      std::vector<BodyMatrix<double>>(system.bodies().size(), {shift, 1.}),
+      rotations,
+      linearization,
+      {shift, 0., 1.},
+      changes);
+  }
+
+
+
+  void
+  TangentSystem::solve(SystemVector &r, Eigen::VectorXd &g)
+  {
+    for (unsigned int b = 0; b < r.size(); ++b)
+      rotate(transpose(rotations[b]),
+             r[b],
+             r[b].size(),
+             coupled_system->body(b));
+    g = coupled_system->solve(g);
+    statistics.real_solves += r.size();
+    for (unsigned int b = 0; b < r.size(); ++b)
+      rotate(rotations[b], coupled_system->body(b), r[b].size(), r[b]);
+  }
+
+
+
+  double
+  slow_squared_rate(const MultibodySystem &system)
+  {
+    double rate = std::numeric_limits<double>::max();
+    for (const Body &body : system.bodies())
+      {
+        const Material &material = body.material();
+        const double length      = body.operators().length;
+        rate                     = std::min(rate,
+                        1e-6 * material.youngs_modulus /
+                          (material.density * length * length));
+      }
+    return rate;
+  }
+} // namespace ACF
