@@ -53,7 +53,7 @@ namespace Tests
     /** @param interval between two recorded states, s */
     RecordedRun(const ParameterFile &file, const double interval)
       : model(read_model(file))
-      , system(model.bodies, model.joints, model.loads, model.directory)
+      , system(model.system, model.directory)
       , recorder(system, model.probes, interval)
     {}
 
@@ -68,7 +68,11 @@ namespace Tests
     {
       std::ostringstream nowhere;
       Progress progress(nowhere, false, model.time.end_time);
-      run_time_loop(system, model.time, {&recorder}, progress, statistics);
+      FactorizationCache cache(statistics);
+      const SystemState start = initial_state(
+        system, model.start, model.time.step_size, cache, statistics, nowhere);
+      run_time_loop(
+        system, start, model.time, {&recorder}, progress, statistics);
     }
 
     const SystemState &
