@@ -119,7 +119,7 @@ end
 END
 expect_status 0 drop.prm
 expect_files drop-results statistics.json used_parameters.prm
-for counter in 'vtu files' 'probe rows' 'stress evaluations' 'schur complements' constraints real \
+for counter in 'vtu files' 'probe rows' 'stress evaluations' 'marker factorisations' constraints real \
   'rejected steps' 'joint column memory \[B\]'; do
   expect_statistic drop-results "$counter" 0
 done
