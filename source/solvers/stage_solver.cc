@@ -291,7 +291,11 @@ namespace ACF
                               const std::vector<Matrix3> &new_rotations,
                               const MarkerLinearization &linearization)
   {
-    rotations = new_rotations;
+    rotations            = new_rotations;
+    const unsigned int n = system.n_marker_values();
+    marker_stiffness.resize(n, n);
+    marker_stiffness.setFromTriplets(linearization.stiffness.begin(),
+                                     linearization.stiffness.end());
     for (unsigned int i = 0; i < systems.size(); ++i)
       {
         const double squared_rate =
@@ -310,40 +314,76 @@ namespace ACF
 
 
   void
+  OneStepStageSolver::multiply_stiffness(const SystemVector &w,
+                                         SystemVector &product) const
+  {
+    Eigen::VectorXd F;
+    const auto rotate = [&](const bool to_world) {
+      for (unsigned int b = 0; b < w.size(); ++b)
+        for (unsigned int p = 0; p < system.body_markers(b).size(); ++p)
+          {
+            const unsigned int k = dim * (system.first_marker(b) + p);
+            const Vector3 value({F(k), F(k + 1), F(k + 2)});
+            const Vector3 rotated =
+              to_world ? rotations[b] * value : transpose(rotations[b]) * value;
+            for (unsigned int i = 0; i < dim; ++i)
+              F(k + i) = rotated[i];
+          }
+    };
+    if (marker_stiffness.nonZeros() > 0)
+      {
+        F = system.marker_values(w);
+        rotate(true);
+        F = (marker_stiffness * F).eval();
+        rotate(false);
+      }
+    for (unsigned int b = 0; b < w.size(); ++b)
+      {
+        system.bodies()[b].operators().stiffness_matrix.vmult(product[b], w[b]);
+        if (F.size() > 0)
+          system.add_marker_forces(b, F, product[b]);
+      }
+  }
+
+
+
+  void
   OneStepStageSolver::solve_all(const StageVector *const stages,
                                 const StageConstraints &constraints,
                                 StageVector &stage_increments,
                                 StageConstraints &constraint_increments)
   {
     // With W_j = tau^2 D_j dY_j:
-    // (M / (tau^2 D_i) + A) W_i + B^T dLambda_i = r_i - A sum_j<i L_ij W_j,
+    // (M / (tau^2 D_i) + K) W_i + B^T dLambda_i = r_i - K sum_j<i L_ij W_j,
     // B W_i = g_i - sum_j<i L_ij B W_j.
     const unsigned int n_stages = constraints.size();
     const unsigned int n_bodies = system.bodies().size();
     const auto &L               = triangularization.lower;
 
     StageConstraints BW(n_stages);
+    SystemVector sum(stage_increments[0]), product(stage_increments[0]);
     for (unsigned int i = 0; i < n_stages; ++i)
       {
         std::vector<double> select(n_stages, 0.);
         select[i] = 1;
         for (unsigned int b = 0; b < n_bodies; ++b)
           {
-            double *const r      = systems[i]->body(b);
-            const unsigned int n = stage_increments[i][b].size();
+            double *const r = systems[i]->body(b);
             if (stages != nullptr)
               combine_in_body_frame(*stages, b, select, rotations[b], r);
             else
-              std::fill(r, r + n, 0.);
-            if (i == 0)
-              continue;
-            NodalVector sum(n), product(n);
+              std::fill(r, r + sum[b].size(), 0.);
+            sum[b] = 0;
             for (unsigned int j = 0; j < i; ++j)
-              for (unsigned int k = 0; k < n; ++k)
-                sum[k] += L(i, j) * systems[j]->body(b)[k];
-            system.bodies()[b].operators().stiffness_matrix.vmult(product, sum);
-            for (unsigned int k = 0; k < n; ++k)
-              r[k] -= product[k];
+              for (unsigned int k = 0; k < sum[b].size(); ++k)
+                sum[b][k] += L(i, j) * systems[j]->body(b)[k];
+          }
+        if (i > 0)
+          {
+            multiply_stiffness(sum, product);
+            for (unsigned int b = 0; b < n_bodies; ++b)
+              for (unsigned int k = 0; k < product[b].size(); ++k)
+                systems[i]->body(b)[k] -= product[b][k];
           }
         BW[i] = constraints[i];
         for (unsigned int j = 0; j < i; ++j)

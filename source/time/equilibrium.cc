@@ -155,35 +155,52 @@ namespace ACF
 
 
 
+  bool
+  EquilibriumSolver::solve_newton(const SystemState &anchor,
+                                  const SystemState &state,
+                                  const double load_factor,
+                                  Increment &increment)
+  {
+    SystemVector &force = increment.positions;
+    if (!forces(state, state.multipliers, load_factor, force) ||
+        !tangent.linearize(state, load_factor))
+      return false;
+    SystemVector inertia(force);
+    tangent.apply_mass(inertia, difference(state.positions, anchor.positions));
+    for (unsigned int b = 0; b < force.size(); ++b)
+      force[b].add(-shift, inertia[b]);
+    const SystemVector r = force;
+    const Eigen::VectorXd gap =
+      -system.constraint_residual(state.time,
+                                  system.marker_values(state.positions));
+
+    increment.multipliers = gap;
+    tangent.factorize(shift);
+    tangent.solve(increment.positions, increment.multipliers);
+    ++n_iterations;
+    increment.curvature =
+      dot(increment.positions, r) - gap.dot(increment.multipliers);
+    return true;
+  }
+
+
+
   EquilibriumSolver::Step
   EquilibriumSolver::try_step(const SystemState &anchor,
                               SystemState &state,
                               const double load_factor)
   {
     Step step;
-    SystemVector force(anchor.positions), inertia(anchor.positions);
+    Increment increment;
+    increment.positions = anchor.positions;
     for (unsigned int i = 0; i < max_newton; ++i)
       {
-        step.failure = "a body is turned inside out";
-        if (!forces(state, state.multipliers, load_factor, force) ||
-            !tangent.linearize(state, load_factor))
+        step.failure = "it is turned inside out";
+        if (!solve_newton(anchor, state, load_factor, increment))
           return step;
-        tangent.apply_mass(inertia,
-                           difference(state.positions, anchor.positions));
-        for (unsigned int b = 0; b < force.size(); ++b)
-          force[b].add(-shift, inertia[b]);
-        const Eigen::VectorXd gap =
-          -system.constraint_residual(state.time,
-                                      system.marker_values(state.positions));
-
-        SystemVector increment(force);
-        Eigen::VectorXd multipliers = gap;
-        tangent.factorize(shift);
-        tangent.solve(increment, multipliers);
-        ++n_iterations;
 
         Step newton;
-        measure(increment, newton);
+        measure(increment.positions, newton);
         step.failure = "it moves by more than its length at once";
         if (!std::isfinite(newton.size))
           return step;
@@ -193,16 +210,14 @@ namespace ACF
               10, std::ceil(std::log10(newton.deformation / max_deformation)));
             return step;
           }
-        // along the increment, less what closes gaps
         step.failure = "it is not stable";
-        if (i == 0 && newton.size > 1e3 * round_off &&
-            dot(increment, force) - gap.dot(multipliers) < 0)
+        if (i == 0 && newton.size > 1e3 * round_off && increment.curvature < 0)
           return step;
 
         step.failure = "the iteration does not converge";
-        for (unsigned int b = 0; b < increment.size(); ++b)
-          state.positions[b] += increment[b];
-        state.multipliers += multipliers;
+        for (unsigned int b = 0; b < state.positions.size(); ++b)
+          state.positions[b] += increment.positions[b];
+        state.multipliers += increment.multipliers;
         measure(difference(state.positions, anchor.positions), step);
         if (step.deformation > 3 * max_deformation)
           return step;

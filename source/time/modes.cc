@@ -56,7 +56,7 @@ namespace ACF
 
   namespace
   {
-    // Largest error that a mode may have.
+    // Largest error that a mode may have, besides round-off.
     constexpr double max_error = 1e-6;
 
     // Vectors of all bodies, one after the other.
@@ -225,7 +225,7 @@ namespace ACF
             const unsigned int n_free,
             std::mt19937 &generator)
     {
-      const unsigned int n_basis = std::min(2 * number + 20, n_free);
+      const unsigned int n_basis = std::min(2 * number + 20, n_free - 1);
       SolverControl control(1000, 1e-10, false, false);
       ArpackSolver solver(control,
                           ArpackSolver::AdditionalData(
@@ -305,6 +305,40 @@ namespace ACF
 
 
 
+    // Until the first eigenvalues stay; three iterations bring out what Lanczos
+    // has missed.
+    std::vector<double>
+    iterate_subspace(const ModeOperators &operators,
+                     const unsigned int number,
+                     const double round_off,
+                     std::vector<FlatVector> &vectors)
+    {
+      constexpr unsigned int min_iterations = 3, max_iterations = 20;
+
+      std::vector<double> eigenvalues;
+      FlatVector product(operators.size());
+      for (unsigned int k = 1; k <= max_iterations; ++k)
+        {
+          for (FlatVector &vector : vectors)
+            {
+              operators.apply_mass(product, vector);
+              operators.solve(vector, product);
+            }
+          const std::vector<double> previous = eigenvalues;
+          eigenvalues  = rayleigh_ritz(operators, vectors);
+          bool settled = (k >= min_iterations);
+          for (unsigned int i = 0; i < number && settled; ++i)
+            settled =
+              std::abs(eigenvalues[i] - previous[i]) <=
+              1e-9 * std::abs(eigenvalues[i] + operators.shift) + round_off;
+          if (settled)
+            break;
+        }
+      return eigenvalues;
+    }
+
+
+
     // |(K_T + sigma M)^-1 (K_T - lambda M) phi|_M
     double
     mode_error(const ModeOperators &operators,
@@ -343,7 +377,7 @@ namespace ACF
                 const unsigned int number,
                 Statistics &statistics)
   {
-    constexpr unsigned int n_more = 2, n_random = 4, max_iterations = 20;
+    constexpr unsigned int n_more = 2, n_random = 4;
 
     const ModeOperators operators(system, state, statistics);
     const unsigned int n_free = operators.size() - system.n_constraints() +
@@ -365,35 +399,17 @@ namespace ACF
         fill_randomly(vectors.back(), generator);
       }
 
-    // three iterations bring out what Lanczos has missed
-    std::vector<double> eigenvalues;
-    FlatVector product(operators.size());
-    for (unsigned int k = 0; k < max_iterations; ++k)
-      {
-        for (FlatVector &vector : vectors)
-          {
-            operators.apply_mass(product, vector);
-            operators.solve(vector, product);
-          }
-        const std::vector<double> previous = eigenvalues;
-        eigenvalues                        = rayleigh_ritz(operators, vectors);
-        double change                      = 0;
-        for (unsigned int i = 0; i < number && k > 0; ++i)
-          change = std::max(change,
-                            std::abs((eigenvalues[i] - previous[i]) /
-                                     (eigenvalues[i] + operators.shift)));
-        if (k >= 2 && change < 1e-9)
-          break;
-      }
-
     NaturalModes result;
     result.round_off = largest_round_off(system);
+    const std::vector<double> eigenvalues =
+      iterate_subspace(operators, number, result.round_off, vectors);
     for (unsigned int k = 0; k < number; ++k)
       {
         Mode mode;
         mode.eigenvalue = eigenvalues[k];
         mode.error      = mode_error(operators, eigenvalues[k], vectors[k]);
-        if (!(mode.error < max_error))
+        const double distance = std::abs(eigenvalues[k] + operators.shift);
+        if (!(mode.error < max_error + result.round_off / distance))
           throw SimulationError("A mode with the frequency " +
                                 format_number(mode.frequency()) +
                                 " Hz is not accurate: its residual is " +

@@ -6,10 +6,59 @@
 
 #include <acf/solvers/stage_solver.h>
 
-#include <unit/mechanics_test.h>
+#include <unit/multibody_test.h>
 
 namespace ACF::Testing
 {
+  inline const std::string box =
+    "set Mesh = box\n set Box from = 0, 0, 0\n"
+    "set Box to = 1, 0.3, 0.2\n set Cells = 1, 1, 1\n";
+  inline const std::string tetrahedra = box + "set Element = tetrahedron\n";
+  inline const std::string hexahedra  = box + "set Element = hexahedron\n";
+
+  /** Thin bodies at the same place. */
+  inline BodyParameters
+  body(const std::string &name, const std::string &mesh)
+  {
+    BodyParameters parameters = body_parameters(name, mesh);
+    parameters.rotation       = Vector3({0.3, -0.2, 1});
+    return parameters;
+  }
+
+  inline JointParameters
+  joint(const std::string &type,
+        const std::string &between,
+        const std::string &directions = "")
+  {
+    JointParameters parameters;
+    parameters.name       = between;
+    parameters.type       = type;
+    parameters.between    = between;
+    parameters.directions = directions;
+    if (type == "revolute")
+      parameters.axis =
+        rotation_matrix(Vector3({0.3, -0.2, 1})) * Vector3({0, 1, 0});
+    return parameters;
+  }
+
+  /** At the placement, where joints have no geometric stiffness. */
+  inline MarkerLinearization
+  linearization_of(const MultibodySystem &system)
+  {
+    const Eigen::VectorXd s = system.marker_values(system.placement());
+    return system.linearize(
+      0, s, s, Eigen::VectorXd::Zero(system.n_constraints()), {});
+  }
+
+  inline std::vector<Matrix3>
+  random_rotations(const MultibodySystem &system, Random &random)
+  {
+    std::vector<Matrix3> rotations;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      rotations.push_back(random.rotation());
+    return rotations;
+  }
+
   /** Right-hand sides or solutions of all stages in one. */
   struct Stages
   {
@@ -17,14 +66,21 @@ namespace ACF::Testing
     StageConstraints constraints;
   };
 
-  /** The full linear system of the stages, as a dense matrix. */
+  /**
+   * The full linear system of the stages as a dense matrix,
+   * \f[ \tau^{-2} A^{-2} \otimes M + \tau^{-1} A^{-1} \otimes C
+   *     + I \otimes K \f]
+   * bordered by $I \otimes B$, with everything of bodies and markers in M, C
+   * and K.
+   */
   class DenseStageSystem
   {
   public:
     DenseStageSystem(const MultibodySystem &system,
                      const ButcherTableau &tableau,
                      const double step_size,
-                     const std::vector<Matrix3> &rotations)
+                     const std::vector<Matrix3> &rotations,
+                     const MarkerLinearization &linearization)
       : system(system)
       , n_stages(tableau.n_stages())
       , n_constraints(system.n_constraints())
@@ -32,9 +88,10 @@ namespace ACF::Testing
       for (const Body &body : system.bodies())
         n_unknowns += body.operators().n_unknowns();
       assemble_bodies(rotations);
-      assemble_constraints();
+      assemble_markers(linearization);
 
-      const Eigen::MatrixXd coupling =
+      const Eigen::MatrixXd rates = tableau.A.inverse() / step_size;
+      const Eigen::MatrixXd squared_rates =
         (tableau.A * tableau.A).inverse() / (step_size * step_size);
       matrix = Eigen::MatrixXd::Zero(size(), size());
       for (unsigned int i = 0; i < n_stages; ++i)
@@ -43,7 +100,8 @@ namespace ACF::Testing
             matrix.block(i * n_unknowns,
                          j * n_unknowns,
                          n_unknowns,
-                         n_unknowns) = coupling(i, j) * M;
+                         n_unknowns) =
+              squared_rates(i, j) * M + rates(i, j) * C;
           matrix.block(i * n_unknowns,
                        i * n_unknowns,
                        n_unknowns,
@@ -166,45 +224,58 @@ namespace ACF::Testing
     void
     assemble_bodies(const std::vector<Matrix3> &rotations)
     {
-      M = K              = Eigen::MatrixXd::Zero(n_unknowns, n_unknowns);
+      M = C = K          = Eigen::MatrixXd::Zero(n_unknowns, n_unknowns);
       unsigned int first = 0;
       for (unsigned int b = 0; b < rotations.size(); ++b)
         {
-          const BodyOperators &body = system.bodies()[b].operators();
-          const unsigned int n      = body.n_unknowns();
-          Eigen::MatrixXd R         = Eigen::MatrixXd::Zero(n, n);
-          for (unsigned int a = 0; a < body.n_nodes; ++a)
+          const Body &body               = system.bodies()[b];
+          const BodyOperators &operators = body.operators();
+          const unsigned int n           = operators.n_unknowns();
+          Eigen::MatrixXd R              = Eigen::MatrixXd::Zero(n, n);
+          for (unsigned int a = 0; a < operators.n_nodes; ++a)
             R.block<dim, dim>(dim * a, dim * a) = to_eigen(rotations[b]);
-          M.block(first, first, n, n) = to_dense(body.mass_matrix);
-          K.block(first, first, n, n) =
-            R * to_dense(body.stiffness_matrix) * R.transpose();
+          const Eigen::MatrixXd mass = to_dense(operators.mass_matrix);
+          const Eigen::MatrixXd stiffness =
+            R * to_dense(operators.stiffness_matrix) * R.transpose();
+          M.block(first, first, n, n) = mass;
+          K.block(first, first, n, n) = stiffness;
+          C.block(first, first, n, n) =
+            body.mass_damping() * mass + body.stiffness_damping() * stiffness;
           first += n;
         }
     }
 
-    /** Column by column, as velocities of single unknowns. */
+    /** S column by column, as marker values of single unknowns. */
     void
-    assemble_constraints()
+    assemble_markers(const MarkerLinearization &linearization)
     {
-      SystemVector unit = system.initial_state().velocities;
+      SystemVector unit = system.placement();
       for (NodalVector &vector : unit)
         vector = 0;
-      B.resize(n_constraints, n_unknowns);
+      const unsigned int n = system.n_marker_values();
+      Eigen::MatrixXd S(n, n_unknowns);
       unsigned int column = 0;
       for (NodalVector &vector : unit)
         for (double &value : vector)
           {
             value           = 1;
-            B.col(column++) = system.constraint_velocity(unit);
+            S.col(column++) = system.marker_values(unit);
             value           = 0;
           }
+      const auto on_nodes = [&](const MarkerLinearization::Triplets &matrix) {
+        return (S.transpose() * to_dense(matrix, n, n) * S).eval();
+      };
+      M += on_nodes(linearization.mass);
+      C += on_nodes(linearization.damping);
+      K += on_nodes(linearization.stiffness);
+      B = to_dense(linearization.constraints, n_constraints, n) * S;
     }
 
     const MultibodySystem &system;
     const unsigned int n_stages;
     const unsigned int n_constraints;
     unsigned int n_unknowns = 0;
-    Eigen::MatrixXd M, K, B, matrix;
+    Eigen::MatrixXd M, C, K, B, matrix;
   };
 } // namespace ACF::Testing
 

@@ -29,7 +29,8 @@ namespace
            youngs_modulus + R"(
     set Poisson's ratio = 0.3
     set Density         = 1000
-)" + entries + "end\n";
+)" + entries +
+           "end\n";
   }
 
   // A driven block carries a second one by a hinge whose axis it turns, so that
@@ -47,7 +48,8 @@ subsection Joints
     set Type    = revolute
     set Between = first: y min, ground
     set Axis    = 1, 0, 0
-    )" + drive + R"(
+    )" + drive +
+           R"(
   end
   subsection hinge
     set Type    = revolute
@@ -102,8 +104,9 @@ end
 // for multipliers.
 TEST(DrivenMechanism, OrdersOfConvergenceOnIndexThree)
 {
-  const double end_time   = 0.32;
-  const std::string model = driven_blocks("4e4", "set Angle = 0.2*(1-cos(4*t))^2");
+  const double end_time = 0.32;
+  const std::string model =
+    driven_blocks("4e4", "set Angle = 0.2*(1-cos(4*t))^2");
   RecordedRun reference(model, end_time, options(3, end_time / 512, end_time));
   reference.run();
   ASSERT_FALSE(reference.system.has_affine_joints());

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/mechanics/joints.h>
 #include <acf/mechanics/multibody_system.h>
 
 #include <cmath>
 
-#include <unit/mechanics_test.h>
+#include <unit/multibody_test.h>
 
 using namespace ACF;
 using namespace ACF::Testing;
@@ -45,22 +44,6 @@ namespace
     return parameters;
   }
 
-  JointParameters
-  joint_parameters(const std::string &type,
-                   const std::string &between,
-                   const std::string &directions = "",
-                   const Vector3 &axis           = Vector3())
-  {
-    JointParameters joint;
-    joint.name       = "joint";
-    joint.type       = type;
-    joint.between    = between;
-    joint.directions = directions;
-    joint.axis       = axis;
-    joint.check();
-    return joint;
-  }
-
   std::string
   text(const Vector3 &v)
   {
@@ -79,7 +62,7 @@ namespace
 
     JointedBody(const JointParameters &joint, const std::string &entries)
       : system({placed_body("b", entries)}, {joint}, LoadParameters(), ".")
-      , start(system.initial_state().positions[0])
+      , start(system.placement()[0])
     {
       // either side may be the ground
       const std::size_t first = joint.between.find(": ") + 2;
@@ -118,24 +101,6 @@ namespace
       return result;
     }
   };
-
-  Eigen::Vector3d
-  to_eigen(const Vector3 &v)
-  {
-    return Eigen::Vector3d(v[0], v[1], v[2]);
-  }
-
-  double
-  largest(const Eigen::MatrixXd &matrix)
-  {
-    return matrix.size() > 0 ? matrix.cwiseAbs().maxCoeff() : 0.;
-  }
-
-  Vector3
-  unit(const Vector3 &v)
-  {
-    return v / v.norm();
-  }
 } // namespace
 
 TEST(Joints, RowsAndStart)
@@ -175,7 +140,7 @@ TEST(Joints, PositionsAndGuides)
   const Vector3 across = unit(Vector3({1, 1, 0}));
   const Vector3 along({0.1, -0.1, 0.7}), turn({0.3, 2, -1});
   const JointedBody guide(joint_parameters("mean position",
-                                           "ground, b: x max",
+                                           "b: x max, ground",
                                            "1,1,0"),
                           box + hexahedra);
   EXPECT_LT(largest(guide.residual(turn, along)), 1e-14);
@@ -185,7 +150,7 @@ TEST(Joints, PositionsAndGuides)
               1e-14);
 
   const JointedBody rail(joint_parameters("mean position",
-                                          "ground, b: x max",
+                                          "b: x max, ground",
                                           "1,2,2; 0,3,-3"),
                          box + hexahedra);
   const Vector3 free =
@@ -195,6 +160,16 @@ TEST(Joints, PositionsAndGuides)
   EXPECT_NEAR(rail.residual(turn, Vector3({3, 1, 0}))(1),
               std::sqrt(0.5),
               1e-14);
+
+  // directions turn with the second side
+  const JointedBody groove(joint_parameters("mean position",
+                                            "ground, b: x max",
+                                            "1,1,0"),
+                           box + hexahedra);
+  const Vector3 turned = rotation_matrix(turn) * across;
+  EXPECT_LT(largest(groove.residual(turn, along - (along * turned) * turned)),
+            1e-14);
+  EXPECT_NEAR(groove.residual(turn, 0.3 * turned)(0), -0.3, 1e-14);
 
   for (const std::string &entries : {box + hexahedra, box + tetrahedra})
     {
@@ -211,12 +186,15 @@ TEST(Joints, HingesTurnAboutTheirAxisOnly)
   Random random;
   double free_error = 0, angle_error = 0;
   const Matrix3 R0 = rotation_matrix(placed_body("b", box).rotation);
-  // axes in the body: normal to a plane surface, in it, and anything on a
-  // curved one
+  // axes in the body: normal to a plane surface, in it and oblique to it, and
+  // anything on a curved one
   const std::vector<std::tuple<std::string, std::string, Vector3>> cases = {
     {box, "x max", Vector3({1, 0, 0})},
     {box, "x max", Vector3({0, 0.6, 0.8})},
     {box, "y min", Vector3({0, -1, 0})},
+    {box, "x max", unit(Vector3({1, 0, 0.5}))},
+    {box, "x max", unit(Vector3({-2, 3, 1}))},
+    {cylinder(3), "end", unit(Vector3({0, 1e-2, 1}))},
     {cylinder(3), "start", Vector3({0, 0, 1})},
     {cylinder(3), "side", Vector3({0, 0, 1})},
     {cylinder(3), "side", unit(Vector3({1, 2, -2}))}};
@@ -362,39 +340,62 @@ TEST(Joints, Errors)
                      {"'Axis'", "zero vector"});
   expect_input_error(check("fixed", "", Vector3({1, 0, 0})),
                      {"'Axis'", "'revolute'"});
-
-  expect_input_error(make(joint_parameters("revolute",
-                                           "arm: x max, ground",
-                                           "",
-                                           Vector3({1, 0, 0.5}))),
-                     {"Joints/joint", "'Axis'", "oblique"});
-  expect_input_error(make(joint_parameters("mean rotation",
-                                           "arm: x max, ground",
-                                           "1,0,0.5; 0,1,0")),
-                     {"Joints/joint", "'Directions'", "oblique"});
 }
 
-
-
-TEST(Joints, RepeatedConstraintsAreAnError)
+TEST(Joints, RepeatedConstraints)
 {
-  const auto system = [](const std::string &first, const std::string &second) {
+  const auto make = [](const std::string &first, const std::string &second) {
     std::vector<JointParameters> joints = {
       joint_parameters("spherical", "arm: x min, ground"),
       joint_parameters("mean position", first, "y, z"),
-      joint_parameters("mean position", second, "z")};
+      joint_parameters("mean position", second, "z"),
+      joint_parameters("mean rotation", "arm: z max, ground", "z")};
+    joints[0].name = "ball";
     joints[1].name = "guide";
-    joints[2].name = "repeated";
-    MultibodySystem({body_parameters("arm", box + hexahedra)},
-                    joints,
-                    LoadParameters(),
-                    ".");
+    joints[2].name = "stop";
+    joints[3].name = "turn";
+    return std::make_unique<MultibodySystem>(
+      std::vector<BodyParameters>{body_parameters("arm", box + hexahedra)},
+      joints,
+      LoadParameters(),
+      ".");
   };
-  EXPECT_NO_THROW(system("arm: x max, ground", "arm: y max, ground"));
-  expect_input_error(
-    [&]() { system("arm: x max, ground", "arm: x max, ground"); },
-    {"Joints/repeated", "'Between'", "'arm'"});
-  expect_input_error(
-    [&]() { system("arm: x min, ground", "arm: y max, ground"); },
-    {"Joints/guide", "'Between'"});
+  const auto independent = make("arm: x max, ground", "arm: y max, ground");
+  EXPECT_EQ(independent->n_repeated_constraints(), 0);
+  EXPECT_EQ(independent->repeating_joints(), "");
+  const auto once = make("arm: x max, ground", "arm: x max, ground");
+  EXPECT_EQ(once->n_repeated_constraints(), 1);
+  EXPECT_EQ(once->repeating_joints(), "'guide', 'stop'");
+  const auto twice = make("arm: x min, ground", "arm: y max, ground");
+  EXPECT_EQ(twice->n_repeated_constraints(), 2);
+  EXPECT_EQ(twice->repeating_joints(), "'ball', 'guide'");
+  const auto thrice = make("arm: x min, ground", "arm: x min, ground");
+  EXPECT_EQ(thrice->n_repeated_constraints(), 3);
+  EXPECT_EQ(thrice->repeating_joints(), "'ball', 'guide', 'stop'");
+
+  // a contradiction is the part of the residual that no position removes
+  Eigen::VectorXd s = once->marker_values(once->placement());
+  EXPECT_LT(once->contradiction(0, s), 1e-15);
+  s += Eigen::VectorXd::Random(s.size());
+  EXPECT_LT(once->contradiction(0, s), 1e-14);
+}
+
+TEST(Joints, ContradictionOfDrives)
+{
+  // two drives of the same surface: half of their difference remains
+  std::vector<JointParameters> joints = {
+    joint_parameters("mean position", "arm: x max, ground", "x, y, z"),
+    joint_parameters("mean position", "arm: x max, ground", "x")};
+  joints[0].displacement = "0.1*t; 0; t";
+  joints[1].displacement = "0.4*t; 0; t";
+  const MultibodySystem system({body_parameters("arm", box + hexahedra)},
+                               joints,
+                               LoadParameters(),
+                               ".");
+  EXPECT_EQ(system.n_repeated_constraints(), 1);
+  Eigen::VectorXd s = system.marker_values(system.placement());
+  EXPECT_LT(system.contradiction(0, s), 1e-14);
+  EXPECT_NEAR(system.contradiction(2, s), 0.3, 1e-13);
+  s += Eigen::VectorXd::Random(s.size());
+  EXPECT_NEAR(system.contradiction(2, s), 0.3, 1e-13);
 }

@@ -16,36 +16,6 @@ namespace
 {
   using Complex = std::complex<double>;
 
-  const std::string box =
-    "set Mesh = box\n set Box from = 0, 0, 0\n"
-    "set Box to = 1, 0.3, 0.2\n set Cells = 1, 1, 1\n";
-  const std::string tetrahedra = box + "set Element = tetrahedron\n";
-  const std::string hexahedra  = box + "set Element = hexahedron\n";
-
-  BodyParameters
-  body(const std::string &name, const std::string &mesh)
-  {
-    BodyParameters parameters = body_parameters(name, mesh);
-    parameters.rotation       = Vector3({0.3, -0.2, 1});
-    return parameters;
-  }
-
-  JointParameters
-  joint(const std::string &type,
-        const std::string &between,
-        const std::string &directions = "")
-  {
-    JointParameters parameters;
-    parameters.name       = between;
-    parameters.type       = type;
-    parameters.between    = between;
-    parameters.directions = directions;
-    if (type == "revolute")
-      parameters.axis =
-        rotation_matrix(Vector3({0.3, -0.2, 1})) * Vector3({0, 1, 0});
-    return parameters;
-  }
-
   const MultibodySystem &
   hinged_and_free()
   {
@@ -78,15 +48,6 @@ namespace
                                         LoadParameters(),
                                         ".");
     return system;
-  }
-
-  std::vector<Matrix3>
-  random_rotations(const MultibodySystem &system, Random &random)
-  {
-    std::vector<Matrix3> rotations;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      rotations.push_back(random.rotation());
-    return rotations;
   }
 
   template <typename Number>
@@ -165,12 +126,13 @@ TEST(JointedFactorization, ComplianceOfTheJoints)
 {
   const Body &body          = several_joints().bodies()[0];
   const unsigned int n      = body.operators().n_unknowns();
-  const unsigned int n_rows = dim * body.joint_functionals().size();
+  const auto &functionals   = body.reference().functionals();
+  const unsigned int n_rows = dim * functionals.size();
   const Complex shift(3e6, 7e6);
   Eigen::MatrixXd S = Eigen::MatrixXd::Zero(n_rows, n);
   for (unsigned int p = 0; p < n_rows / dim; ++p)
     {
-      const NodalFunctional &functional = body.joint_functionals()[p];
+      const NodalFunctional &functional = functionals[p];
       for (unsigned int k = 0; k < functional.nodes.size(); ++k)
         for (unsigned int i = 0; i < dim; ++i)
           S(dim * p + i, dim * functional.nodes[k] + i) = functional.weights[k];
@@ -210,11 +172,13 @@ TEST(DiagonalizedStageSolver, AgainstTheDenseSystem)
                                            radau_iia(s),
                                            cache,
                                            statistics);
-            const auto rotations = random_rotations(*system, random);
-            const DenseStageSystem dense(*system, radau_iia(s), tau, rotations);
+            const auto rotations     = random_rotations(*system, random);
+            const auto linearization = linearization_of(*system);
+            const DenseStageSystem dense(
+              *system, radau_iia(s), tau, rotations, linearization);
             const Eigen::VectorXd r = dense.random_right_hand_side(random);
             Stages stages           = dense.unflatten(r);
-            solver.prepare(tau, rotations);
+            solver.prepare(tau, rotations, linearization);
             solver.solve(stages.bodies, stages.constraints);
             error =
               std::max(error,
@@ -243,11 +207,13 @@ TEST(OneStepStageSolver, ConvergesToTheDenseSolution)
             Statistics statistics;
             FactorizationCache cache(statistics);
             OneStepStageSolver solver(*system, radau_iia(s), cache, statistics);
-            const auto rotations = random_rotations(*system, random);
-            const DenseStageSystem dense(*system, radau_iia(s), tau, rotations);
+            const auto rotations     = random_rotations(*system, random);
+            const auto linearization = linearization_of(*system);
+            const DenseStageSystem dense(
+              *system, radau_iia(s), tau, rotations, linearization);
             const Eigen::VectorXd r     = dense.random_right_hand_side(random);
             const Eigen::VectorXd exact = dense.solve(r);
-            solver.prepare(tau, rotations);
+            solver.prepare(tau, rotations, linearization);
 
             Eigen::VectorXd x  = Eigen::VectorXd::Zero(r.size());
             const auto correct = [&](const Eigen::VectorXd &residual) {
@@ -295,14 +261,16 @@ TEST(FactorizationCache, FactorisesOncePerStepSize)
   FactorizationCache cache(statistics);
   DiagonalizedStageSolver solver(system, radau_iia(3), cache, statistics);
   const auto prepare = [&](const double tau) {
-    solver.prepare(tau, random_rotations(system, random));
+    solver.prepare(tau,
+                   random_rotations(system, random),
+                   linearization_of(system));
   };
   const auto expect = [&](const unsigned int n_factorizations,
-                          const unsigned int n_schur_complements) {
+                          const unsigned int n_marker_systems) {
     // for each body one real and one complex matrix per step size
     EXPECT_EQ(statistics.real_factorizations, 2 * n_factorizations);
     EXPECT_EQ(statistics.complex_factorizations, 2 * n_factorizations);
-    EXPECT_EQ(statistics.schur_complements, 2 * n_schur_complements);
+    EXPECT_EQ(statistics.marker_factorizations, 2 * n_marker_systems);
   };
   expect(0, 0);
   prepare(1e-3);
@@ -316,30 +284,68 @@ TEST(FactorizationCache, FactorisesOncePerStepSize)
 
   // another solver shares the factors that it has in common
   OneStepStageSolver one_step(system, radau_iia(2), cache, statistics);
-  one_step.prepare(1e-3, random_rotations(system, random));
+  one_step.prepare(1e-3,
+                   random_rotations(system, random),
+                   linearization_of(system));
   EXPECT_EQ(statistics.real_factorizations, 4 + 4);
   OneStepStageSolver same(system, radau_iia(2), cache, statistics);
-  same.prepare(1e-3, random_rotations(system, random));
+  same.prepare(1e-3,
+               random_rotations(system, random),
+               linearization_of(system));
   EXPECT_EQ(statistics.real_factorizations, 8);
   EXPECT_GT(statistics.joint_column_bytes, 0);
 }
 
-TEST(FactorizationCache, NoJointsNoSchurComplement)
+TEST(FactorizationCache, NoJointsNoMarkerSystem)
 {
   Random random;
   const MultibodySystem &system = unconstrained();
   Statistics statistics;
   FactorizationCache cache(statistics);
   DiagonalizedStageSolver solver(system, radau_iia(2), cache, statistics);
-  const auto rotations = random_rotations(system, random);
-  solver.prepare(1e-3, rotations);
-  const DenseStageSystem dense(system, radau_iia(2), 1e-3, rotations);
+  const auto rotations     = random_rotations(system, random);
+  const auto linearization = linearization_of(system);
+  solver.prepare(1e-3, rotations, linearization);
+  const DenseStageSystem dense(
+    system, radau_iia(2), 1e-3, rotations, linearization);
   Stages stages = dense.unflatten(dense.random_right_hand_side(random));
   solver.solve(stages.bodies, stages.constraints);
-  EXPECT_EQ(statistics.schur_complements, 0);
+  EXPECT_EQ(statistics.marker_factorizations, 0);
   EXPECT_EQ(statistics.joint_column_bytes, 0);
   EXPECT_EQ(statistics.complex_factorizations, 1);
   EXPECT_EQ(statistics.complex_solves, 1);
   EXPECT_EQ(statistics.real_solves, 0);
   EXPECT_EQ(statistics.setup_solves, 1); // the check of the factorisation
+}
+
+TEST(FactorizationCache, IdenticalBodiesShareFactors)
+{
+  Random random;
+  std::vector<BodyParameters> bodies;
+  std::vector<JointParameters> joints;
+  for (const std::string name : {"a", "b", "c", "d"})
+    {
+      bodies.push_back(body(name, tetrahedra));
+      bodies.back().position[1] = bodies.size();
+      joints.push_back(joint("spherical", name + ": x min, ground"));
+    }
+  bodies[3].stiffness_damping = 1e-3; // its matrix has another shift
+  const MultibodySystem system(bodies, joints, LoadParameters(), ".");
+  EXPECT_EQ(system.n_reference_bodies(), 1);
+  Statistics statistics;
+  FactorizationCache cache(statistics);
+  DiagonalizedStageSolver solver(system, radau_iia(2), cache, statistics);
+  const auto rotations     = random_rotations(system, random);
+  const auto linearization = linearization_of(system);
+  solver.prepare(1e-3, rotations, linearization);
+  EXPECT_EQ(statistics.complex_factorizations, 2);
+  EXPECT_EQ(statistics.real_factorizations, 0);
+
+  const DenseStageSystem dense(
+    system, radau_iia(2), 1e-3, rotations, linearization);
+  const Eigen::VectorXd r = dense.random_right_hand_side(random);
+  Stages stages           = dense.unflatten(r);
+  solver.solve(stages.bodies, stages.constraints);
+  EXPECT_EQ(statistics.complex_solves, 4);
+  EXPECT_LT(dense.error(dense.flatten(stages), dense.solve(r)), 1e-9);
 }

@@ -217,14 +217,13 @@ TEST(TimeIntegration, ConstraintsDoNotDrift)
         std::max(position_residual,
                  run.system.constraint_residual(state.positions)
                    .lpNorm<Eigen::Infinity>());
-      velocity_residual =
-        std::max(velocity_residual,
-                 run.system
-                   .constraint_velocity(
-                     state.time,
-                     run.system.marker_values(state.positions),
-                     run.system.marker_values(state.velocities))
-                   .lpNorm<Eigen::Infinity>());
+      velocity_residual = std::max(
+        velocity_residual,
+        run.system
+          .constraint_velocity(state.time,
+                               run.system.marker_values(state.positions),
+                               run.system.marker_values(state.velocities))
+          .lpNorm<Eigen::Infinity>());
     }
   std::cout << "residual of positions " << position_residual
             << ", of velocities " << velocity_residual << std::endl;

@@ -119,8 +119,9 @@ namespace ACF
    * Approximate solution with real one-step matrices, stage by stage, in the
    * manner of the paper (Sec. 7.1): $A_{RK}^2 \approx L D$, so that with
    * $\Delta Z = \tau^2 L D\, \Delta Y$
-   * \f[ (M + \tau^2 D_i A) \Delta Y_i + B^T \Delta\Lambda_i = r_i -
-   *     \tau^2 A \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
+   * \f[ (M + \tau^2 D_i K) \Delta Y_i + B^T \Delta\Lambda_i = r_i -
+   *     \tau^2 K \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
+   * Damping enters each stage with the rate $1 / (\tau \sqrt{D_i})$ alone.
    */
   class OneStepStageSolver : public StageSolver
   {
@@ -155,7 +156,14 @@ namespace ACF
               StageVector &stage_increments,
               StageConstraints &constraint_increments);
 
+    /** The product of K with vectors in the bodies' frames. */
+    void
+    multiply_stiffness(const SystemVector &w, SystemVector &product) const;
+
     std::vector<std::unique_ptr<CoupledSystem<double>>> systems;
+
+    /** Of the markers, at the last prepare(). */
+    Eigen::SparseMatrix<double> marker_stiffness;
   };
 } // namespace ACF
 

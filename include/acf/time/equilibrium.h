@@ -73,6 +73,16 @@ namespace ACF
       std::string failure;
     };
 
+    /** Solution of a linear system. */
+    struct Increment
+    {
+      SystemVector positions;
+      Eigen::VectorXd multipliers;
+
+      /** Increment times shifted tangent times increment, J. */
+      double curvature = 0;
+    };
+
     /** Relaxes to the equilibrium of a load factor. */
     void
     relax(SystemState &state, const double load_factor);
@@ -81,6 +91,17 @@ namespace ACF
     try_step(const SystemState &anchor,
              SystemState &state,
              const double load_factor);
+
+    /**
+     * One Newton iteration.
+     * @param increment positions need the size of the bodies
+     * @return false if a body is turned inside out
+     */
+    bool
+    solve_newton(const SystemState &anchor,
+                 const SystemState &state,
+                 const double load_factor,
+                 Increment &increment);
 
     /**
      * Forces p - f - S^T (D^T lambda - Q), and Phi.
