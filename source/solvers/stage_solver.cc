@@ -34,26 +34,27 @@ namespace ACF
 
 
 
-    // sum_i factor_i R^T r_i for one body
+    // sum_i factor_i R_i^T r_i for one body
     template <typename Number>
     void
     combine_in_body_frame(const StageVector &stages,
                           const unsigned int body,
                           const std::vector<Number> &factors,
-                          const Matrix3 &rotation,
+                          const StageRotations &rotations,
                           Number *result)
     {
-      const unsigned int n = stages[0][body].size() / dim;
-      for (unsigned int a = 0; a < n; ++a)
+      std::fill(result, result + stages[0][body].size(), Number());
+      for (unsigned int i = 0; i < factors.size(); ++i)
         {
-          Number sum[dim] = {};
-          for (unsigned int i = 0; i < factors.size(); ++i)
-            for (unsigned int c = 0; c < dim; ++c)
-              sum[c] += factors[i] * stages[i][body][dim * a + c];
-          for (unsigned int c = 0; c < dim; ++c)
-            result[dim * a + c] = rotation[0][c] * sum[0] +
-                                  rotation[1][c] * sum[1] +
-                                  rotation[2][c] * sum[2];
+          const Matrix3 R_transposed = transpose(rotations.stages[i][body]);
+          const NodalVector &r       = stages[i][body];
+          for (unsigned int k = 0; k < r.size(); k += dim)
+            {
+              const Vector3 value =
+                R_transposed * Vector3({r[k], r[k + 1], r[k + 2]});
+              for (unsigned int c = 0; c < dim; ++c)
+                result[k + c] += factors[i] * value[c];
+            }
         }
     }
 
@@ -132,7 +133,7 @@ namespace ACF
 
   void
   DiagonalizedStageSolver::prepare(const double step_size,
-                                   const std::vector<Matrix3> &new_rotations,
+                                   const StageRotations &new_rotations,
                                    const MarkerLinearization &linearization)
   {
     rotations = new_rotations;
@@ -149,7 +150,7 @@ namespace ACF
                          system,
                          rate.real(),
                          squared_rate.real(),
-                         rotations,
+                         rotations.mean,
                          linearization,
                          cache,
                          statistics);
@@ -158,7 +159,7 @@ namespace ACF
                          system,
                          rate,
                          squared_rate,
-                         rotations,
+                         rotations.mean,
                          linearization,
                          cache,
                          statistics);
@@ -198,7 +199,7 @@ namespace ACF
       {
         for (unsigned int b = 0; b < n_bodies; ++b)
           combine_in_body_frame(
-            *stages, b, from_stages, rotations[b], coupled_system.body(b));
+            *stages, b, from_stages, rotations, coupled_system.body(b));
         mu = coupled_system.solve(g);
         solve_counter<Number>(statistics) += n_bodies;
       }
@@ -210,7 +211,8 @@ namespace ACF
         for (unsigned int b = 0; b < n_bodies; ++b)
           add_in_world_frame(coupled_system.body(b),
                              to_stages[i],
-                             rotations[b],
+                             stages != nullptr ? rotations.stages[i][b]
+                                               : rotations.mean[b],
                              stage_increments[i][b]);
         for (unsigned int r = 0; r < mu.size(); ++r)
           constraint_increments[i](r) += std::real(to_stages[i] * mu(r));
@@ -288,7 +290,7 @@ namespace ACF
 
   void
   OneStepStageSolver::prepare(const double step_size,
-                              const std::vector<Matrix3> &new_rotations,
+                              const StageRotations &new_rotations,
                               const MarkerLinearization &linearization)
   {
     rotations            = new_rotations;
@@ -304,7 +306,7 @@ namespace ACF
                        system,
                        std::sqrt(squared_rate),
                        squared_rate,
-                       rotations,
+                       rotations.mean,
                        linearization,
                        cache,
                        statistics);
@@ -324,8 +326,9 @@ namespace ACF
           {
             const unsigned int k = dim * (system.first_marker(b) + p);
             const Vector3 value({F(k), F(k + 1), F(k + 2)});
-            const Vector3 rotated =
-              to_world ? rotations[b] * value : transpose(rotations[b]) * value;
+            const Vector3 rotated = to_world
+                                      ? rotations.mean[b] * value
+                                      : transpose(rotations.mean[b]) * value;
             for (unsigned int i = 0; i < dim; ++i)
               F(k + i) = rotated[i];
           }
@@ -370,7 +373,7 @@ namespace ACF
           {
             double *const r = systems[i]->body(b);
             if (stages != nullptr)
-              combine_in_body_frame(*stages, b, select, rotations[b], r);
+              combine_in_body_frame(*stages, b, select, rotations, r);
             else
               std::fill(r, r + sum[b].size(), 0.);
             sum[b] = 0;
@@ -399,7 +402,8 @@ namespace ACF
           for (unsigned int j = 0; j < n_stages; ++j)
             add_in_world_frame(systems[j]->body(b),
                                triangularization.increments(i, j),
-                               rotations[b],
+                               stages != nullptr ? rotations.stages[i][b]
+                                                 : rotations.mean[b],
                                stage_increments[i][b]);
         }
   }

@@ -160,31 +160,46 @@ namespace ACF
 
 
 
-  std::vector<Matrix3>
+  StageRotations
   RadauStepper::predicted_rotations(const SystemState &state) const
   {
-    std::vector<Matrix3> rotations;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+    const unsigned int n_stages = tableau.n_stages();
+    const unsigned int n_bodies = system.bodies().size();
+    StageRotations rotations;
+    rotations.mean.resize(n_bodies);
+    rotations.stages.assign(n_stages, rotations.mean);
+    for (unsigned int b = 0; b < n_bodies; ++b)
       {
-        const Body &body = system.bodies()[b];
-        Matrix3 F;
-        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-          F += mean_deformation_gradient(body.operators(),
-                                         stage_position(state, i, b)) /
-               tableau.n_stages();
-        std::optional<BodyRotation> frame =
-          body_rotation(F, body.rotation_measure());
-        if (!frame)
-          frame = body_rotation(mean_deformation_gradient(body.operators(),
-                                                          state.positions[b]),
-                                body.rotation_measure());
-        if (!frame)
+        const Body &body     = system.bodies()[b];
+        const auto rotate_to = [&body](const Matrix3 &F, Matrix3 &rotation) {
+          const std::optional<BodyRotation> frame =
+            body_rotation(F, body.rotation_measure());
+          if (frame)
+            rotation = frame->rotation;
+          return frame.has_value();
+        };
+        Matrix3 start;
+        if (!rotate_to(mean_deformation_gradient(body.operators(),
+                                                 state.positions[b]),
+                       start))
           throw SimulationError("Body '" + body.name() +
                                 "' is turned inside out at time " +
                                 format_number(state.time) +
                                 " s: its mean deformation gradient has a "
                                 "determinant that is not positive.");
-        rotations.push_back(frame->rotation);
+        // where a prediction is too far off, the start of the step serves
+        rotations.mean[b] = start;
+        Matrix3 mean;
+        for (unsigned int i = 0; i < n_stages; ++i)
+          {
+            rotations.stages[i][b] = start;
+            const Matrix3 F =
+              mean_deformation_gradient(body.operators(),
+                                        stage_position(state, i, b));
+            rotate_to(F, rotations.stages[i][b]);
+            mean += F / n_stages;
+          }
+        rotate_to(mean, rotations.mean[b]);
       }
     return rotations;
   }
@@ -474,7 +489,7 @@ namespace ACF
             convergence_factor =
               std::max(factor, std::numeric_limits<double>::epsilon());
             report.converged = true;
-            if (!system.has_affine_joints())
+            if (system.n_constraints() > 0)
               correct_constraints(state);
             return report;
           }

@@ -89,7 +89,7 @@ TEST(CoupledSystem, EverythingAgainstTheDenseSystem)
                                          statistics);
           for (unsigned int n = 0; n < 2; ++n) // the pattern is kept
             {
-              const auto rotations     = random_rotations(system, random);
+              const auto rotations     = random_rotations(system, random, s);
               const auto linearization = random_linearization(system, random);
               const DenseStageSystem dense(
                 system, radau_iia(s), tau, rotations, linearization);
@@ -141,7 +141,7 @@ TEST(CoupledSystem, OneStepMatricesConverge)
             Statistics statistics;
             FactorizationCache cache(statistics);
             OneStepStageSolver solver(system, radau_iia(s), cache, statistics);
-            const auto rotations     = random_rotations(system, random);
+            const auto rotations     = random_rotations(system, random, s);
             const auto linearization = random_linearization(system, random);
             const DenseStageSystem dense(
               system, radau_iia(s), tau, rotations, linearization);
@@ -206,7 +206,7 @@ TEST(CoupledSystem, RepeatedConstraintsShareTheLoad)
             return system.linearize(
               0, s, s, Eigen::VectorXd::Zero(system.n_constraints()), {});
           };
-          const auto rotations = random_rotations(single, random);
+          const auto rotations = random_rotations(single, random, 3);
           const DenseStageSystem dense(
             single, radau_iia(3), tau, rotations, linearize(single));
           const Stages rhs =

@@ -50,12 +50,24 @@ namespace ACF::Testing
       0, s, s, Eigen::VectorXd::Zero(system.n_constraints()), {});
   }
 
-  inline std::vector<Matrix3>
-  random_rotations(const MultibodySystem &system, Random &random)
+  /** Stages that turn about a random axis from one to the next by an angle. */
+  inline StageRotations
+  random_rotations(const MultibodySystem &system,
+                   Random &random,
+                   const unsigned int n_stages,
+                   const double angle = 0)
   {
-    std::vector<Matrix3> rotations;
+    StageRotations rotations;
+    rotations.stages.resize(n_stages);
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      rotations.push_back(random.rotation());
+      {
+        const Matrix3 mean = random.rotation();
+        const Vector3 axis = random.rotation() * Vector3({1, 0, 0});
+        rotations.mean.push_back(mean);
+        for (unsigned int i = 0; i < n_stages; ++i)
+          rotations.stages[i].push_back(
+            rotation_matrix((i - 0.5 * (n_stages - 1)) * angle * axis) * mean);
+      }
     return rotations;
   }
 
@@ -71,7 +83,7 @@ namespace ACF::Testing
    * \f[ \tau^{-2} A^{-2} \otimes M + \tau^{-1} A^{-1} \otimes C
    *     + I \otimes K \f]
    * bordered by $I \otimes B$, with everything of bodies and markers in M, C
-   * and K.
+   * and K, and with the C and K of bodies turned to each stage.
    */
   class DenseStageSystem
   {
@@ -79,7 +91,7 @@ namespace ACF::Testing
     DenseStageSystem(const MultibodySystem &system,
                      const ButcherTableau &tableau,
                      const double step_size,
-                     const std::vector<Matrix3> &rotations,
+                     const StageRotations &rotations,
                      const MarkerLinearization &linearization)
       : system(system)
       , n_stages(tableau.n_stages())
@@ -87,15 +99,14 @@ namespace ACF::Testing
     {
       for (const Body &body : system.bodies())
         n_unknowns += body.operators().n_unknowns();
-      assemble_bodies(rotations);
-      assemble_markers(linearization);
-
       const Eigen::MatrixXd rates = tableau.A.inverse() / step_size;
       const Eigen::MatrixXd squared_rates =
         (tableau.A * tableau.A).inverse() / (step_size * step_size);
       matrix = Eigen::MatrixXd::Zero(size(), size());
       for (unsigned int i = 0; i < n_stages; ++i)
         {
+          assemble_bodies(rotations.stages[i]);
+          assemble_markers(linearization);
           for (unsigned int j = 0; j < n_stages; ++j)
             matrix.block(i * n_unknowns,
                          j * n_unknowns,

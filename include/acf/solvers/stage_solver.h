@@ -17,6 +17,16 @@ namespace ACF
   /** Constraint rows for each stage. */
   using StageConstraints = std::vector<Eigen::VectorXd>;
 
+  /** Rotations of the bodies in a step. */
+  struct StageRotations
+  {
+    /** [stage][body]. */
+    std::vector<std::vector<Matrix3>> stages;
+
+    /** Between those of the stages, [body]. */
+    std::vector<Matrix3> mean;
+  };
+
   /**
    * Solves the linear system of a simplified Newton iteration for the stage
    * increments,
@@ -26,7 +36,14 @@ namespace ACF
    * or an approximation of it, with factorisations that depend on the step size
    * only. K is the stiffness R A R^T of the bodies and that of the markers, C
    * the Rayleigh damping and that of the markers, M includes lumped masses.
-   * Rotations and markers are frozen by prepare().
+   *
+   * One factorisation serves bodies that turn in the step because
+   * $\Delta Z_i = R_i w_i$ is solved for in frames that turn with them: with
+   * the rotation R_i of stage i the stiffness of the body is exact, and what
+   * the equations for w neglect, $R_i^T R_j - 1$, meets only the masses and the
+   * markers. (With one rotation for all stages the error would meet the
+   * stiffness, whose higher modes then decide the contraction.) Rotations and
+   * markers are frozen by prepare().
    */
   class StageSolver
   {
@@ -39,7 +56,7 @@ namespace ACF
      */
     virtual void
     prepare(const double step_size,
-            const std::vector<Matrix3> &rotations,
+            const StageRotations &rotations,
             const MarkerLinearization &linearization) = 0;
 
     /**
@@ -50,7 +67,8 @@ namespace ACF
     solve(StageVector &stages, StageConstraints &constraints) = 0;
 
     /**
-     * The same for r = 0, which needs no solves of the bodies.
+     * The same for r = 0, which needs no solves of the bodies, and with the
+     * mean rotations in all stages, so that affine constraints hold afterwards.
      * @param[out] stages $\Delta Z$
      * @param[in,out] constraints g, replaced by $\Delta\Lambda$
      */
@@ -75,7 +93,7 @@ namespace ACF
 
     void
     prepare(const double step_size,
-            const std::vector<Matrix3> &rotations,
+            const StageRotations &rotations,
             const MarkerLinearization &linearization) override;
 
     void
@@ -105,7 +123,7 @@ namespace ACF
     const StageDiagonalization diagonalization;
     FactorizationCache &cache;
     Statistics &statistics;
-    std::vector<Matrix3> rotations;
+    StageRotations rotations;
 
     /** One of the two for each component, depending on its eigenvalue. */
     std::vector<std::unique_ptr<CoupledSystem<double>>> real_systems;
@@ -133,7 +151,7 @@ namespace ACF
 
     void
     prepare(const double step_size,
-            const std::vector<Matrix3> &rotations,
+            const StageRotations &rotations,
             const MarkerLinearization &linearization) override;
 
     void
@@ -148,7 +166,7 @@ namespace ACF
     const StageTriangularization triangularization;
     FactorizationCache &cache;
     Statistics &statistics;
-    std::vector<Matrix3> rotations;
+    StageRotations rotations;
 
     void
     solve_all(const StageVector *stages,

@@ -110,11 +110,12 @@ namespace ACF
     void
     predict(const SystemState &state, const double step_size);
 
-    /** Freezes rotations and markers at the mean of the predicted stages. */
+    /** Freezes the rotations of the predicted stages and the markers at their
+     * mean. */
     void
     prepare(const SystemState &state);
 
-    std::vector<Matrix3>
+    StageRotations
     predicted_rotations(const SystemState &state) const;
 
     bool
