@@ -336,6 +336,7 @@ namespace ACF
       system =
         std::make_unique<const MultibodySystem>(model.system, model.directory);
     }
+    check_number_of_modes(*system, model.modes.number);
     if (!quiet)
       describe_bodies(*system, stream);
 
@@ -430,11 +431,14 @@ namespace ACF
             const MultibodySystem system(model.system, model.directory);
             for (const ProbeParameters &probe : model.probes)
               make_probe(probe, system);
+            check_number_of_modes(system, model.modes.number);
+            std::ostringstream log;
+            check_start(system, model.start, model.time.step_size, log);
             if (!command_line.quiet)
               {
                 describe_bodies(system, stream);
-                stream << command_line.model.string() << " is valid."
-                       << std::endl;
+                stream << log.str() << command_line.model.string()
+                       << " is valid." << std::endl;
               }
           }
       }

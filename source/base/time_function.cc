@@ -12,6 +12,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iostream>
+#include <sstream>
 
 namespace ACF
 {
@@ -33,6 +35,43 @@ namespace ACF
 
 
 
+    // deal.II prints what is wrong with an expression to std::cerr before it
+    // throws: catches that text.
+    class ParserMessage
+    {
+    public:
+      ParserMessage()
+        : former(std::cerr.rdbuf(stream.rdbuf()))
+      {}
+
+      ParserMessage(const ParserMessage &) = delete;
+      ParserMessage &
+      operator=(const ParserMessage &) = delete;
+
+      ~ParserMessage()
+      {
+        std::cerr.rdbuf(former);
+      }
+
+      // " (reason)", from a line "Message:  <reason>".
+      std::string
+      reason() const
+      {
+        const std::string text  = stream.str();
+        const std::size_t begin = text.find('<', text.find("Message:"));
+        const std::size_t end   = text.find(">\n", begin);
+        return end == std::string::npos
+                 ? ""
+                 : " (" + text.substr(begin + 1, end - begin - 1) + ")";
+      }
+
+    private:
+      std::ostringstream stream;
+      std::streambuf *const former;
+    };
+
+
+
     template <int d>
     std::shared_ptr<const FunctionParser<d>>
     make_parser(const std::string &variables,
@@ -42,6 +81,7 @@ namespace ACF
                 const std::string &allowed)
     {
       const auto parser = std::make_shared<FunctionParser<d>>();
+      const ParserMessage message;
       try
         {
           if (Utilities::trim(expression).empty())
@@ -53,7 +93,10 @@ namespace ACF
         }
       catch (const std::exception &)
         {
-          throw InputError(section, entry, "'" + expression + "'", allowed);
+          throw InputError(section,
+                           entry,
+                           "'" + expression + "'" + message.reason(),
+                           allowed);
         }
       return parser;
     }

@@ -113,10 +113,12 @@ namespace ACF
     const unsigned int n_unknowns = n + m + n_change_unknowns;
     Eigen::SparseMatrix<Number> matrix(n_unknowns, n_unknowns);
     matrix.setFromTriplets(triplets.begin(), triplets.end());
-    // without changes the pattern is that of the mechanism
-    if (!analyzed || !changes.empty())
+    // the pattern is that of the mechanism but for these two
+    const bool pattern_varies =
+      !changes.empty() || !linearization.redundancy.empty();
+    if (!analyzed || pattern_varies)
       marker_system.analyzePattern(matrix);
-    analyzed = changes.empty();
+    analyzed = !pattern_varies;
     marker_system.factorize(matrix);
     ++statistics.marker_factorizations;
     if (marker_system.info() != Eigen::Success)

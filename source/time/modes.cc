@@ -371,28 +371,52 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // Beyond the modes that are asked for, for those next to the last.
+    constexpr unsigned int n_more = 2, n_random = 4;
+
+    unsigned int
+    n_motions(const MultibodySystem &system)
+    {
+      unsigned int n = system.n_repeated_constraints();
+      for (const Body &body : system.bodies())
+        n += body.operators().n_unknowns();
+      return n - std::min(n, system.n_constraints());
+    }
+  } // namespace
+
+
+
+  void
+  check_number_of_modes(const MultibodySystem &system,
+                        const unsigned int number)
+  {
+    const unsigned int most =
+      std::max(n_motions(system) / 2, n_more + n_random) - n_more - n_random;
+    if (number > most)
+      throw InputError("Modes",
+                       "Number",
+                       std::to_string(number),
+                       "at most " + std::to_string(most) +
+                         ", as the bodies have " +
+                         std::to_string(n_motions(system)) +
+                         " unknowns less constraints");
+  }
+
+
+
   NaturalModes
   natural_modes(const MultibodySystem &system,
                 const SystemState &state,
                 const unsigned int number,
                 Statistics &statistics)
   {
-    constexpr unsigned int n_more = 2, n_random = 4;
-
+    check_number_of_modes(system, number);
     const ModeOperators operators(system, state, statistics);
-    const unsigned int n_free = operators.size() - system.n_constraints() +
-                                system.n_repeated_constraints();
-    if (2 * (number + n_more + n_random) > n_free)
-      throw InputError("Modes",
-                       "Number",
-                       std::to_string(number),
-                       "a number much smaller than that of the unknowns less "
-                       "the constraints, " +
-                         std::to_string(n_free));
-
     std::mt19937 generator;
     std::vector<FlatVector> vectors =
-      lanczos(operators, number + n_more, n_free, generator);
+      lanczos(operators, number + n_more, n_motions(system), generator);
     for (unsigned int k = 0; k < n_random; ++k)
       {
         vectors.emplace_back(operators.size());

@@ -246,6 +246,21 @@ namespace ACF
 
 
 
+    // What moves a body by less than the tolerance of a step is no jump.
+    double
+    negligible_velocity(const MultibodySystem &system,
+                        const SystemState &state,
+                        const double step_size)
+    {
+      const double length   = largest_length(system);
+      const double rounding = 1e-7 * largest_velocity(state);
+      const double interval =
+        step_size > 0 ? step_size : 1 / std::sqrt(slow_squared_rate(system));
+      return rounding * std::max(1., 1 / length) + 1e-10 * length / interval;
+    }
+
+
+
     void
     check_velocities(const MultibodySystem &system,
                      const SystemState &state,
@@ -253,10 +268,7 @@ namespace ACF
     {
       const Eigen::VectorXd rate = velocity_residual(system, state);
       const double speed         = rate.lpNorm<Eigen::Infinity>();
-      // what moves a body by less than the tolerance of a step is no jump
-      const double length = largest_length(system);
-      if (speed > 1e-7 * largest_velocity(state) * std::max(1., 1 / length) +
-                    1e-10 * length / step_size)
+      if (speed > negligible_velocity(system, state, step_size))
         throw InputError(worst_joint(system, rate).section,
                          "Between",
                          "velocities at the start that the joint does not "
@@ -308,6 +320,27 @@ namespace ACF
 
 
 
+  void
+  check_start(const MultibodySystem &system,
+              const StartParameters &parameters,
+              const double step_size,
+              std::ostream &log)
+  {
+    if (system.n_constraints() == 0)
+      return;
+    const SystemState state = system.initial_state();
+    check_repeated_constraints(system,
+                               system.marker_values(state.positions),
+                               log);
+    if (parameters.project_positions)
+      return;
+    check_positions(system, state);
+    if (!parameters.equilibrium && !parameters.project_velocities)
+      check_velocities(system, state, step_size);
+  }
+
+
+
   SystemState
   initial_state(const MultibodySystem &system,
                 const StartParameters &parameters,
@@ -328,17 +361,11 @@ namespace ACF
     if (has_joints &&
         (parameters.project_positions || parameters.project_velocities))
       projection.emplace(system, step_size, cache, statistics);
-    if (has_joints)
+    check_start(system, parameters, step_size, log);
+    if (has_joints && parameters.project_positions)
       {
-        check_repeated_constraints(system,
-                                   system.marker_values(state.positions),
-                                   log);
-        if (parameters.project_positions)
-          {
-            project_positions(system, *projection, state, log);
-            update_laws();
-          }
-        check_positions(system, state);
+        project_positions(system, *projection, state, log);
+        update_laws();
       }
     if (parameters.equilibrium)
       find_equilibrium(system, parameters, state, statistics, log);

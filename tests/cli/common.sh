@@ -61,6 +61,22 @@ expect_one_line() {
   check "$1: stderr does not begin with the program's name" grep -q '^acf-dealii: ' stderr
 }
 
+# Changes good.prm by sed and expects an error in it:
+# expect_error SED_SCRIPT LINE SECTION ENTRY FOUND ALLOWED [TEXT ...]
+# An empty section, entry or line is not looked for.
+expect_error() {
+  local script=$1 line=$2 section=$3 entry=$4 found=$5 allowed=$6
+  shift 6
+  sed "$script" good.prm >wrong.prm
+  check "the sed script changes nothing: $script" [ -n "$(diff good.prm wrong.prm)" ]
+  expect_status 2 --validate wrong.prm
+  expect_one_line "$script"
+  check "$script: output on stdout" [ ! -s stdout ]
+  expect_text stderr "$script" "acf-dealii: wrong.prm:${line:+$line: }" \
+    ${section:+"section '$section'"} ${entry:+"entry '$entry'"} \
+    "found $found" "allowed: $allowed" "$@"
+}
+
 # Prints the outcome and ends the script.
 finish() {
   echo "$n_checks checks, $n_failures failed"

@@ -63,6 +63,11 @@ namespace ACF
     double round_off = 0;
   };
 
+  /** @throws InputError if natural_modes() cannot compute that many. */
+  void
+  check_number_of_modes(const MultibodySystem &system,
+                        const unsigned int number);
+
   /**
    * Modes of
    * \f[ K_T \phi + S^T D^T \mu = \omega^2 (M + S^T M_L S)\, \phi, \qquad

@@ -35,6 +35,17 @@ namespace ACF
 
 
   /**
+   * Checks the start of a model file as far as that needs no factorisation:
+   * initial_state() can still fail where it projects or looks for an
+   * equilibrium. Parameters as there.
+   */
+  void
+  check_start(const MultibodySystem &system,
+              const StartParameters &parameters,
+              const double step_size,
+              std::ostream &log);
+
+  /**
    * The state at t = 0: that of the model file, changed so that it satisfies
    * the constraints \f$\Phi = 0\f$ and \f$\dot\Phi = 0\f$ if the model asks for
    * it. The change is the smallest one in the norm of \f$M / h^2 + A\f$ with
