@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 // Time integration of mechanisms with joints that move and that are driven:
-// orders of convergence, drift, and the cost of chains of identical bodies.
+// orders of convergence and drift.
 
 #include <gtest/gtest.h>
 
