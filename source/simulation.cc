@@ -188,6 +188,9 @@ namespace ACF
     json["steps"]                  = statistics.steps;
     json["rejected steps"]         = statistics.rejected_steps;
     json["halvings"]               = statistics.halvings;
+    json["exact tangent steps"]    = statistics.exact_tangent_steps;
+    json["krylov iterations"]      = statistics.krylov_iterations;
+    json["factor refreshes"]       = statistics.factor_refreshes;
     json["newton iterations"]      = statistics.newton_iterations;
     json["newton iterations max"]  = statistics.max_newton_iterations;
     json["equilibrium iterations"] = statistics.equilibrium_iterations;

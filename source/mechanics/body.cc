@@ -39,6 +39,18 @@ namespace ACF
       rotation_measure = (value == "polar" ? RotationMeasure::polar
                                            : RotationMeasure::three_points);
     });
+    prm.declare_entry(
+      "Strain",
+      "reduced",
+      Patterns::Selection("reduced|Green-Lagrange"),
+      "Measure of strain: the small strain in the frame of the body, or "
+      "that of Green and Lagrange, which has geometric stiffening and holds "
+      "for large deflections, at the price of a loop over the elements. "
+      "Units: none.");
+    prm.add_action("Strain", [this](const std::string &value) {
+      strain_measure = (value == "reduced" ? StrainMeasure::reduced
+                                           : StrainMeasure::green_lagrange);
+    });
     prm.add_parameter("Position",
                       position,
                       "Where the origin of the mesh is placed in the world. "
@@ -121,6 +133,18 @@ namespace ACF
   ReferenceBody::fits(const BodyParameters &parameters) const
   {
     return parameters.mesh == mesh && parameters.material == material;
+  }
+
+
+
+  const GreenLagrangeOperator &
+  ReferenceBody::green_lagrange() const
+  {
+    if (!green_lagrange_operator)
+      green_lagrange_operator =
+        std::make_unique<const GreenLagrangeOperator>(finite_elements,
+                                                      material);
+    return *green_lagrange_operator;
   }
 
 

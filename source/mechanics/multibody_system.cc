@@ -2,8 +2,8 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
+#include <acf/mechanics/elastic_force.h>
 #include <acf/mechanics/multibody_system.h>
-#include <acf/mechanics/reduced_strain.h>
 
 #include <deal.II/base/numbers.h>
 
@@ -546,11 +546,7 @@ namespace ACF
         operators.mass_matrix.vmult(product, state.velocities[b]);
         energy.kinetic += 0.5 * (state.velocities[b] * product);
         energy.elastic +=
-          reduced_strain_force(operators,
-                               system_bodies[b].rotation_measure(),
-                               state.positions[b],
-                               product,
-                               scratch)
+          elastic_force(system_bodies[b], state.positions[b], product, scratch)
             .value();
         energy.potential -=
           operators.mass * (g * mass_mean(operators, state.positions[b]));

@@ -125,6 +125,15 @@ namespace ACF
 
 
 
+  BlockNodeMatrix &
+  BlockNodeMatrix::operator=(const double value)
+  {
+    std::fill(values.begin(), values.end(), value);
+    return *this;
+  }
+
+
+
   void
   BlockNodeMatrix::add(const unsigned int row,
                        const unsigned int col,

@@ -161,7 +161,8 @@ namespace ACF
                               const double mass_damping,
                               const double stiffness_damping,
                               NodalVector &force,
-                              NodalVector &scratch)
+                              NodalVector &scratch,
+                              const bool with_elasticity)
   {
     const std::optional<BodyRotation> frame =
       body_rotation(mean_deformation_gradient(body, positions), measure);
@@ -179,7 +180,7 @@ namespace ACF
 
     // force = A (q + beta q'), by way of force = q
     co_rotated_displacement(body, positions, frame->rotation, force);
-    rate.sadd(stiffness_damping, 1, force);
+    rate.sadd(stiffness_damping, with_elasticity ? 1 : 0, force);
     body.stiffness_matrix.vmult(force, rate);
 
     // A annihilates rotations of the reference body, so that its part of the

@@ -9,9 +9,11 @@
 namespace ACF
 {
   template <typename Number>
-  JointedFactorization<Number>::JointedFactorization(const ReferenceBody &body,
-                                                     const Number shift)
-    : factor(body.operators(), shift)
+  JointedFactorization<Number>::JointedFactorization(
+    const ReferenceBody &body,
+    const BlockNodeMatrix &stiffness,
+    const Number shift)
+    : factor(body.operators(), stiffness, shift)
     , functionals(body.functionals())
     , n_unknowns(body.operators().n_unknowns())
     , columns(dim * functionals.size() * n_unknowns)
@@ -69,25 +71,30 @@ namespace ACF
 
   template <typename Number>
   JointedFactorization<Number> &
-  FactorizationCache::find_or_factorize(
-    std::map<Key, std::unique_ptr<JointedFactorization<Number>>> &factors,
-    const Body &body,
-    const Number shift,
-    unsigned long &counter)
+  FactorizationCache::find_or_factorize(Factors<Number> &factors,
+                                        const Body &body,
+                                        const Number shift,
+                                        unsigned long &counter)
   {
-    auto &entry =
-      factors[Key(&body.reference(), std::real(shift), std::imag(shift))];
+    const auto own         = stiffness.find(&body);
+    const bool is_replaced = own != stiffness.end();
+    const void *const kind = is_replaced
+                               ? static_cast<const void *>(&body)
+                               : static_cast<const void *>(&body.reference());
+    auto &entry = factors[Key(kind, std::real(shift), std::imag(shift))];
     if (!entry)
       {
         const PhaseTimer timer(statistics, "factorisation");
         try
           {
-            entry =
-              std::make_unique<JointedFactorization<Number>>(body.reference(),
-                                                             shift);
+            entry = std::make_unique<JointedFactorization<Number>>(
+              body.reference(),
+              is_replaced ? *own->second : body.operators().stiffness_matrix,
+              shift);
           }
         catch (const SimulationError &error)
           {
+            factors.erase(Key(kind, std::real(shift), std::imag(shift)));
             throw SimulationError("Body '" + body.name() +
                                   "': " + error.what());
           }
@@ -125,6 +132,48 @@ namespace ACF
                              body,
                              shift,
                              statistics.complex_factorizations);
+  }
+
+
+
+  template <typename Number>
+  void
+  FactorizationCache::drop(Factors<Number> &factors, const Body &body)
+  {
+    for (auto it = factors.begin(); it != factors.end();)
+      if (std::get<0>(it->first) == &body)
+        {
+          const auto &factor = *it->second;
+          statistics.factor_entries -=
+            it->second->factorization().statistics().n_entries;
+          statistics.factor_bytes -=
+            it->second->factorization().statistics().n_bytes;
+          statistics.joint_column_bytes -= factor.column_bytes();
+          it = factors.erase(it);
+        }
+      else
+        ++it;
+  }
+
+
+
+  void
+  FactorizationCache::replace_stiffness(
+    const Body &body,
+    std::unique_ptr<const BlockNodeMatrix> matrix)
+  {
+    restore_stiffness(body);
+    stiffness[&body] = std::move(matrix);
+  }
+
+
+
+  void
+  FactorizationCache::restore_stiffness(const Body &body)
+  {
+    drop(real_factors, body);
+    drop(complex_factors, body);
+    stiffness.erase(&body);
   }
 
 

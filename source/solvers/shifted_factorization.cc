@@ -123,6 +123,16 @@ namespace ACF
   template <typename Number>
   ShiftedFactorization<Number>::ShiftedFactorization(const BodyOperators &body,
                                                      const Number shift)
+    : ShiftedFactorization(body, body.stiffness_matrix, shift)
+  {}
+
+
+
+  template <typename Number>
+  ShiftedFactorization<Number>::ShiftedFactorization(
+    const BodyOperators &body,
+    const BlockNodeMatrix &stiffness,
+    const Number shift)
     : n_unknowns(body.n_unknowns())
     , mumps(std::make_unique<Mumps>())
   {
@@ -142,7 +152,7 @@ namespace ACF
           const unsigned int b = graph.column[e];
           if (b > a)
             continue;
-          const double *const block = body.stiffness_matrix.block(e);
+          const double *const block = stiffness.block(e);
           for (unsigned int i = 0; i < dim; ++i)
             for (unsigned int j = 0; j < dim; ++j)
               if (b < a || j <= i)
@@ -189,7 +199,7 @@ namespace ACF
 
     factor_statistics.n_entries = mumps->large_infog(29);
     factor_statistics.n_bytes   = factor_statistics.n_entries * sizeof(Number);
-    check(body, shift);
+    check(body, stiffness, shift);
     factor_statistics.wall_time = timer.wall_time();
   }
 
@@ -223,6 +233,7 @@ namespace ACF
   template <typename Number>
   void
   ShiftedFactorization<Number>::check(const BodyOperators &body,
+                                      const BlockNodeMatrix &stiffness,
                                       const Number shift)
   {
     // r = the masses as load in all directions, which every body has
@@ -244,7 +255,7 @@ namespace ACF
                ++e)
             for (unsigned int j = 0; j < dim; ++j)
               {
-                Number entry = body.stiffness_matrix.block(e)[dim * i + j];
+                Number entry = stiffness.block(e)[dim * i + j];
                 if (i == j)
                   entry += shift * body.mass_matrix.value(e);
                 product += entry * solution[dim * graph.column[e] + j];

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/mechanics/reduced_strain_tangent.h>
 #include <acf/solvers/tangent_system.h>
 
 #include <algorithm>
@@ -41,18 +40,14 @@ namespace ACF
   bool
   TangentSystem::linearize(const SystemState &state, const double load_factor)
   {
-    rotations.clear();
-    changes.clear();
+    tangents.clear();
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
-        const Body &body = system.bodies()[b];
-        auto tangent     = reduced_strain_tangent(body.operators(),
-                                              body.rotation_measure(),
-                                              state.positions[b]);
+        auto tangent =
+          ElasticTangent::at(system.bodies()[b], state.positions[b]);
         if (!tangent)
           return false;
-        rotations.push_back(tangent->rotation);
-        changes.push_back({std::move(tangent->columns), tangent->coefficients});
+        tangents.push_back(std::move(*tangent));
       }
     const unsigned int n = system.n_marker_values();
     linearization        = system.linearize(state.time,
@@ -90,21 +85,7 @@ namespace ACF
   TangentSystem::apply_stiffness(SystemVector &y, const SystemVector &x) const
   {
     for (unsigned int b = 0; b < x.size(); ++b)
-      {
-        const std::size_t n = x[b].size();
-        NodalVector local(n), product(n);
-        rotate(transpose(rotations[b]), x[b], n, local);
-        system.bodies()[b].operators().stiffness_matrix.vmult(product, local);
-        const LowRankChange &change = changes[b];
-        if (change.columns.cols() > 0)
-          {
-            const Eigen::Map<const Eigen::VectorXd> w(local.begin(), n);
-            Eigen::Map<Eigen::VectorXd>(product.begin(), n) +=
-              change.columns *
-              (change.coefficients * (change.columns.transpose() * w));
-          }
-        rotate(rotations[b], product, n, y[b]);
-      }
+      tangents[b].vmult(y[b], x[b]);
     add_marker_product(G, x, y);
   }
 
@@ -131,6 +112,16 @@ namespace ACF
           std::make_unique<CoupledSystem<double>>(system, *cache, statistics);
         factor_shift = shift;
       }
+    std::vector<Matrix3> rotations;
+    std::vector<LowRankChange> changes;
+    for (unsigned int b = 0; b < tangents.size(); ++b)
+      {
+        const ReducedStrainTangent &reduced = tangents[b].reduced_tangent();
+        rotations.push_back(tangents[b].rotation());
+        changes.push_back({reduced.columns, reduced.coefficients});
+        if (auto matrix = tangents[b].matrix())
+          cache->replace_stiffness(system.bodies()[b], std::move(matrix));
+      }
     coupled_system->prepare(
       std::vector<BodyMatrix<double>>(system.bodies().size(), {shift, 1.}),
       rotations,
@@ -145,14 +136,17 @@ namespace ACF
   TangentSystem::solve(SystemVector &r, Eigen::VectorXd &g)
   {
     for (unsigned int b = 0; b < r.size(); ++b)
-      rotate(transpose(rotations[b]),
+      rotate(transpose(tangents[b].rotation()),
              r[b],
              r[b].size(),
              coupled_system->body(b));
     g = coupled_system->solve(g);
     statistics.real_solves += r.size();
     for (unsigned int b = 0; b < r.size(); ++b)
-      rotate(rotations[b], coupled_system->body(b), r[b].size(), r[b]);
+      rotate(tangents[b].rotation(),
+             coupled_system->body(b),
+             r[b].size(),
+             r[b]);
   }
 
 

@@ -256,11 +256,7 @@ namespace ACF
       {
         const Body &body = system.bodies()[b];
         NodalVector scratch(force[b].size());
-        if (!reduced_strain_force(body.operators(),
-                                  body.rotation_measure(),
-                                  state.positions[b],
-                                  force[b],
-                                  scratch))
+        if (!elastic_force(body, state.positions[b], force[b], scratch))
           return false;
         force[b] *= -1;
         system.add_loads(

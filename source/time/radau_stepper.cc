@@ -3,7 +3,6 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
-#include <acf/mechanics/reduced_strain.h>
 #include <acf/time/radau_stepper.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -95,8 +94,9 @@ namespace ACF
     , statistics(statistics)
     , tableau(radau_iia(parameters.n_stages))
     , A_inverse(tableau.A.inverse())
-    , A_inverse_squared(A_inverse * A_inverse)
     , cache(statistics)
+    , equations(system, tableau, statistics)
+    , exact(system.bodies().size())
   {
     if (parameters.one_step_matrices)
       stage_solver = std::make_unique<OneStepStageSolver>(system,
@@ -108,23 +108,17 @@ namespace ACF
                                                                tableau,
                                                                cache,
                                                                statistics);
-    SystemVector zero;
-    for (const Body &body : system.bodies())
-      zero.emplace_back(body.operators().n_unknowns());
-    stages.assign(tableau.n_stages(), zero);
-    stage_multipliers.assign(tableau.n_stages(),
-                             Eigen::VectorXd::Zero(system.n_constraints()));
   }
 
 
 
   void
-  RadauStepper::predict(const SystemState &state, const double step_size)
+  RadauStepper::predict(const SystemState &state)
   {
     // The collocation polynomial of the accepted step beyond its end, minus
     // u_n + c_i tau v_n; before the first step a motion without acceleration.
     const double ratio =
-      accepted_step_size > 0 ? step_size / accepted_step_size : 0;
+      accepted_step_size > 0 ? equations.step_size() / accepted_step_size : 0;
     const unsigned int last = tableau.n_stages() - 1;
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
@@ -132,230 +126,33 @@ namespace ACF
           stage_shape(tableau, 1 + tableau.c(i) * ratio);
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
           {
-            stages[i][b] = 0;
+            NodalVector &Z = equations.increments[i][b];
+            Z              = 0;
             if (accepted_step_size > 0)
               for (unsigned int j = 0; j <= last; ++j)
-                stages[i][b].add(shape[j] - (j == last ? 1. : 0.) -
-                                   tableau.c(i) * ratio * A_inverse(last, j),
-                                 accepted_stages[j][b]);
+                Z.add(shape[j] - (j == last ? 1. : 0.) -
+                        tableau.c(i) * ratio * A_inverse(last, j),
+                      accepted_stages[j][b]);
           }
-        stage_multipliers[i] = state.multipliers;
+        equations.multipliers[i] = state.multipliers;
       }
-  }
-
-
-
-  NodalVector
-  RadauStepper::stage_position(const SystemState &state,
-                               const unsigned int stage,
-                               const unsigned int body) const
-  {
-    NodalVector x(state.positions[body]);
-    x.add(tableau.c(stage) * tried_step_size,
-          state.velocities[body],
-          1.,
-          stages[stage][body]);
-    return x;
-  }
-
-
-
-  StageRotations
-  RadauStepper::predicted_rotations(const SystemState &state) const
-  {
-    const unsigned int n_stages = tableau.n_stages();
-    const unsigned int n_bodies = system.bodies().size();
-    StageRotations rotations;
-    rotations.mean.resize(n_bodies);
-    rotations.stages.assign(n_stages, rotations.mean);
-    for (unsigned int b = 0; b < n_bodies; ++b)
-      {
-        const Body &body     = system.bodies()[b];
-        const auto rotate_to = [&body](const Matrix3 &F, Matrix3 &rotation) {
-          const std::optional<BodyRotation> frame =
-            body_rotation(F, body.rotation_measure());
-          if (frame)
-            rotation = frame->rotation;
-          return frame.has_value();
-        };
-        Matrix3 start;
-        if (!rotate_to(mean_deformation_gradient(body.operators(),
-                                                 state.positions[b]),
-                       start))
-          throw SimulationError("Body '" + body.name() +
-                                "' is turned inside out at time " +
-                                format_number(state.time) +
-                                " s: its mean deformation gradient has a "
-                                "determinant that is not positive.");
-        // where a prediction is too far off, the start of the step serves
-        rotations.mean[b] = start;
-        Matrix3 mean;
-        for (unsigned int i = 0; i < n_stages; ++i)
-          {
-            rotations.stages[i][b] = start;
-            const Matrix3 F =
-              mean_deformation_gradient(body.operators(),
-                                        stage_position(state, i, b));
-            rotate_to(F, rotations.stages[i][b]);
-            mean += F / n_stages;
-          }
-        rotate_to(mean, rotations.mean[b]);
-      }
-    return rotations;
-  }
-
-
-
-  NodalVector
-  RadauStepper::stage_velocity(const SystemState &state,
-                               const unsigned int stage,
-                               const unsigned int body) const
-  {
-    NodalVector v(state.velocities[body]);
-    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
-      v.add(A_inverse(stage, j) / tried_step_size, stages[j][body]);
-    return v;
-  }
-
-
-
-  double
-  RadauStepper::stage_time(const SystemState &state,
-                           const unsigned int stage) const
-  {
-    return state.time + tableau.c(stage) * tried_step_size;
   }
 
 
 
   void
-  RadauStepper::prepare(const SystemState &state)
+  RadauStepper::prepare()
   {
-    MarkerLinearization linearization;
-    if (system.n_marker_values() > 0)
-      {
-        const unsigned int n = tableau.n_stages();
-        Eigen::VectorXd s    = Eigen::VectorXd::Zero(system.n_marker_values());
-        Eigen::VectorXd v    = s;
-        Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.n_constraints());
-        SystemVector work(system.bodies().size());
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            for (unsigned int b = 0; b < work.size(); ++b)
-              work[b] = stage_position(state, i, b);
-            s += system.marker_values(work) / n;
-            lambda += stage_multipliers[i] / n;
-            if (!system.needs_velocities())
-              continue;
-            for (unsigned int b = 0; b < work.size(); ++b)
-              work[b] = stage_velocity(state, i, b);
-            v += system.marker_values(work) / n;
-          }
-        linearization = system.linearize(
-          state.time + 0.5 * tried_step_size, s, v, lambda, state.law_values);
-      }
-    stage_solver->prepare(tried_step_size,
-                          predicted_rotations(state),
-                          linearization);
-  }
-
-
-
-  bool
-  RadauStepper::assemble_body_residual(const SystemState &state,
-                                       const unsigned int stage,
-                                       const unsigned int b,
-                                       const NodalVector &position,
-                                       const NodalVector &velocity,
-                                       const NodalVector &acceleration,
-                                       NodalVector &residual) const
-  {
-    const Body &body               = system.bodies()[b];
-    const BodyOperators &operators = body.operators();
-    NodalVector work(operators.n_unknowns());
-    ++statistics.force_evaluations;
-    const bool success =
-      body.is_damped()
-        ? damped_reduced_strain_force(operators,
-                                      body.rotation_measure(),
-                                      position,
-                                      velocity,
-                                      body.mass_damping(),
-                                      body.stiffness_damping(),
-                                      residual,
-                                      work)
-        : reduced_strain_force(
-            operators, body.rotation_measure(), position, residual, work)
-            .has_value();
-    if (!success)
-      return false;
-    operators.mass_matrix.vmult(work, acceleration);
-    residual += work;
-    residual *= -1;
-    system.add_loads(b, stage_time(state, stage), position, residual);
-    return true;
-  }
-
-
-
-  bool
-  RadauStepper::assemble_residual(const SystemState &state,
-                                  StageVector &residual,
-                                  StageConstraints &constraint_residual,
-                                  std::string &failure)
-  {
-    const double inverse_square = 1 / (tried_step_size * tried_step_size);
-    const unsigned int n_bodies = system.bodies().size();
-    const bool has_masses       = !system.masses().empty();
-    SystemVector positions(n_bodies), velocities(n_bodies),
-      accelerations(n_bodies);
-    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-      {
-        for (unsigned int b = 0; b < n_bodies; ++b)
-          {
-            positions[b] = stage_position(state, i, b);
-            if (system.needs_velocities())
-              velocities[b] = stage_velocity(state, i, b);
-            accelerations[b].reinit(positions[b].size());
-            for (unsigned int j = 0; j < tableau.n_stages(); ++j)
-              accelerations[b].add(inverse_square * A_inverse_squared(i, j),
-                                   stages[j][b]);
-            if (!assemble_body_residual(state,
-                                        i,
-                                        b,
-                                        positions[b],
-                                        velocities[b],
-                                        accelerations[b],
-                                        residual[i][b]))
-              {
-                failure = "body '" + system.bodies()[b].name() +
-                          "' is turned inside out (the determinant of its "
-                          "mean deformation gradient is not positive)";
-                return false;
-              }
-          }
-        if (system.n_marker_values() == 0)
-          continue;
-        const double time       = stage_time(state, i);
-        const Eigen::VectorXd s = system.marker_values(positions);
-        Eigen::VectorXd v, a;
-        if (system.needs_velocities())
-          v = system.marker_values(velocities);
-        if (has_masses)
-          a = system.marker_values(accelerations);
-        const Eigen::VectorXd F = system.marker_forces(
-          time, s, v, a, stage_multipliers[i], state.law_values);
-        for (unsigned int b = 0; b < n_bodies; ++b)
-          system.add_marker_forces(b, F, residual[i][b]);
-        constraint_residual[i] = -system.constraint_residual(time, s);
-      }
-    return true;
+    rotations = equations.rotations();
+    stage_solver->prepare(equations.step_size(),
+                          rotations,
+                          equations.mean_linearization());
   }
 
 
 
   void
-  RadauStepper::correct_constraints(const SystemState &state)
+  RadauStepper::correct_constraints()
   {
     // three corrections reach round-off from any tolerance of the iteration
     constexpr unsigned int max_corrections = 3;
@@ -364,20 +161,15 @@ namespace ACF
       length = std::max(length, body.operators().length);
     const double tolerance = 1e-14 * std::max(1., length);
 
-    SystemVector positions(system.bodies().size());
-    StageVector increment(stages);
+    StageVector increment(equations.increments);
     for (unsigned int k = 0; k < max_corrections; ++k)
       {
-        StageConstraints constraints(tableau.n_stages());
-        double largest = 0;
-        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+        StageConstraints constraints = equations.constraint_residual();
+        double largest               = 0;
+        for (Eigen::VectorXd &rows : constraints)
           {
-            for (unsigned int b = 0; b < positions.size(); ++b)
-              positions[b] = stage_position(state, i, b);
-            constraints[i] =
-              -system.constraint_residual(positions, stage_time(state, i));
-            largest =
-              std::max(largest, constraints[i].lpNorm<Eigen::Infinity>());
+            rows *= -1;
+            largest = std::max(largest, rows.lpNorm<Eigen::Infinity>());
           }
         if (!(largest > tolerance))
           return;
@@ -385,11 +177,22 @@ namespace ACF
         ++statistics.constraint_corrections;
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
           {
-            for (unsigned int b = 0; b < positions.size(); ++b)
-              stages[i][b] += increment[i][b];
-            stage_multipliers[i] += constraints[i];
+            for (unsigned int b = 0; b < system.bodies().size(); ++b)
+              equations.increments[i][b] += increment[i][b];
+            equations.multipliers[i] += constraints[i];
           }
       }
+  }
+
+
+
+  double
+  RadauStepper::increment_norm(const SystemVector &increment,
+                               const unsigned int b) const
+  {
+    const BodyOperators &operators = system.bodies()[b].operators();
+    return increment[b].l2_norm() / std::sqrt(1. * operators.n_nodes) /
+           operators.length;
   }
 
 
@@ -401,10 +204,7 @@ namespace ACF
     for (const SystemVector &stage : increment)
       for (unsigned int b = 0; b < stage.size(); ++b)
         {
-          const BodyOperators &operators = system.bodies()[b].operators();
-          const double relative          = stage[b].l2_norm() /
-                                  std::sqrt(1. * operators.n_nodes) /
-                                  operators.length;
+          const double relative = increment_norm(stage, b);
           if (!std::isfinite(relative))
             return relative;
           norm = std::max(norm, relative);
@@ -414,36 +214,33 @@ namespace ACF
 
 
 
-  StepReport
-  RadauStepper::try_step(const SystemState &state, const double step_size)
+  void
+  RadauStepper::iterate(const LinearSolver &solve,
+                        const unsigned int patience,
+                        StepReport &report)
   {
-    tried_step_size = step_size;
-    predict(state, step_size);
-    prepare(state);
-
-    // The one-step matrices belong to a non-normal iteration, whose increments
-    // may grow at first.
-    const unsigned int patience = parameters.one_step_matrices ? 6 : 0;
-
-    StepReport report;
-    StageVector increment(stages);
-    StageConstraints constraint_increment(stage_multipliers);
-    double factor         = std::pow(convergence_factor, 0.8);
-    double previous_norm  = 0;
-    double previous_ratio = 0;
-    while (report.iterations < parameters.max_newton_iterations)
+    StageVector increment(equations.increments);
+    StageConstraints constraint_increment(equations.multipliers);
+    double factor             = std::pow(convergence_factor, 0.8);
+    double previous_norm      = 0;
+    double previous_ratio     = 0;
+    unsigned int n_iterations = 0;
+    report.failure.clear();
+    while (n_iterations < parameters.max_newton_iterations)
       {
-        if (!assemble_residual(
-              state, increment, constraint_increment, report.failure))
-          return report;
-        stage_solver->solve(increment, constraint_increment);
+        if (!equations.residual(increment,
+                                constraint_increment,
+                                report.failure) ||
+            !solve(increment, constraint_increment, report.failure))
+          return;
+        ++n_iterations;
         ++report.iterations;
         ++statistics.newton_iterations;
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
           {
             for (unsigned int b = 0; b < system.bodies().size(); ++b)
-              stages[i][b] += increment[i][b];
-            stage_multipliers[i] += constraint_increment[i];
+              equations.increments[i][b] += increment[i][b];
+            equations.multipliers[i] += constraint_increment[i];
           }
 
         const double norm = increment_norm(increment);
@@ -452,34 +249,33 @@ namespace ACF
             report.failure =
               "the iteration produced numbers that are not "
               "finite";
-            return report;
+            return;
           }
-        if (report.iterations > 1)
+        if (n_iterations > 1)
           {
             // the mean of two iterations, as single ones may be misleading
             const double ratio = norm / previous_norm;
             report.contraction =
-              (report.iterations == 2 ? ratio
-                                      : std::sqrt(ratio * previous_ratio));
+              (n_iterations == 2 ? ratio : std::sqrt(ratio * previous_ratio));
             previous_ratio = ratio;
-            if (report.contraction >= 0.99 && report.iterations > patience)
-              {
-                report.failure = "the iteration diverges";
-                return report;
-              }
-            factor = report.contraction < 1
-                       ? report.contraction / (1 - report.contraction)
-                       : std::numeric_limits<double>::infinity();
-
+            factor         = report.contraction < 1
+                               ? report.contraction / (1 - report.contraction)
+                               : std::numeric_limits<double>::infinity();
             const double predicted =
               factor * norm *
               std::pow(report.contraction,
-                       parameters.max_newton_iterations - report.iterations);
-            if (predicted > parameters.newton_tolerance &&
-                report.iterations > patience)
+                       parameters.max_newton_iterations - n_iterations);
+            if (n_iterations > patience)
               {
-                report.failure = "the iteration contracts too slowly";
-                return report;
+                if (report.contraction >= 0.99)
+                  report.failure = "the iteration diverges";
+                else if (predicted > parameters.newton_tolerance)
+                  report.failure = "the iteration contracts too slowly";
+                if (!report.failure.empty())
+                  {
+                    choose_exact_bodies(increment);
+                    return;
+                  }
               }
           }
         previous_norm         = norm;
@@ -489,12 +285,125 @@ namespace ACF
             convergence_factor =
               std::max(factor, std::numeric_limits<double>::epsilon());
             report.converged = true;
-            if (system.n_constraints() > 0)
-              correct_constraints(state);
-            return report;
+            return;
           }
       }
     report.failure = "the iteration did not reach its tolerance";
+    choose_exact_bodies(increment);
+  }
+
+
+
+  void
+  RadauStepper::choose_exact_bodies(const StageVector &increment)
+  {
+    const double largest = increment_norm(increment);
+    for (unsigned int b = 0; b < exact.size(); ++b)
+      for (const SystemVector &stage : increment)
+        if (increment_norm(stage, b) > 0.01 * largest)
+          exact[b] = true;
+  }
+
+
+
+  void
+  RadauStepper::iterate_exactly(StepReport &report)
+  {
+    constexpr unsigned int max_krylov_iterations = 40;
+    if (!tangent)
+      tangent = std::make_unique<StageTangent>(system, tableau);
+    double reduction = 0;
+    const auto solve = [&](StageVector &r,
+                           StageConstraints &g,
+                           std::string &failure) {
+      if (!equations.linearize(exact, rotations, *tangent))
+        {
+          failure = "a body is turned inside out";
+          return false;
+        }
+      unsigned int n_iterations;
+      reduction = tangent->solve(
+        *stage_solver, 1e-3, max_krylov_iterations, r, g, n_iterations);
+      statistics.krylov_iterations += n_iterations;
+      if (reduction < 0.3)
+        return true;
+      failure = "the linear systems with the exact tangent are not solved by " +
+                std::to_string(max_krylov_iterations) + " iterations";
+      return false;
+    };
+    iterate(solve, 2, report);
+    if (report.converged)
+      statistics.exact_tangent_steps +=
+        std::count(exact.begin(), exact.end(), true);
+  }
+
+
+
+  bool
+  RadauStepper::refresh_factors()
+  {
+    bool refreshed = false;
+    for (unsigned int b = 0; b < exact.size(); ++b)
+      if (exact[b])
+        {
+          const Body &body = system.bodies()[b];
+          const auto elastic =
+            ElasticTangent::at(body, equations.position(0, b));
+          auto matrix = elastic ? elastic->matrix() : nullptr;
+          if (!matrix)
+            continue;
+          cache.replace_stiffness(body, std::move(matrix));
+          ++statistics.factor_refreshes;
+          refreshed = true;
+        }
+    return refreshed;
+  }
+
+
+
+  StepReport
+  RadauStepper::try_step(const SystemState &state, const double step_size)
+  {
+    equations.start_step(state, step_size);
+    predict(state);
+    prepare();
+
+    StepReport report;
+    if (exact_steps == 0)
+      {
+        // The one-step matrices belong to a non-normal iteration, whose
+        // increments may grow at first.
+        std::fill(exact.begin(), exact.end(), false);
+        iterate(
+          [&](StageVector &r, StageConstraints &g, std::string &) {
+            stage_solver->solve(r, g);
+            return true;
+          },
+          parameters.one_step_matrices ? 6 : 0,
+          report);
+        if (report.converged)
+          next_wait = first_wait;
+        else
+          {
+            predict(state);
+            exact_steps = next_wait;
+            next_wait   = std::min(2 * next_wait, longest_wait);
+          }
+      }
+    if (!report.converged &&
+        std::find(exact.begin(), exact.end(), true) != exact.end())
+      {
+        if (n_failures >= 2 && refresh_factors())
+          prepare();
+        iterate_exactly(report);
+      }
+    if (report.converged && system.n_constraints() > 0)
+      correct_constraints();
+    if (!report.converged)
+      {
+        ++n_failures;
+        exact_steps = 0;
+      }
     return report;
   }
 
@@ -515,20 +424,21 @@ namespace ACF
   RadauStepper::accept(SystemState &state)
   {
     step_start           = state;
-    accepted_step_size   = tried_step_size;
-    accepted_stages      = stages;
-    accepted_multipliers = stage_multipliers;
+    accepted_step_size   = equations.step_size();
+    accepted_stages      = equations.increments;
+    accepted_multipliers = equations.multipliers;
+    n_failures           = 0;
+    exact_steps -= std::min(exact_steps, 1U);
 
     const unsigned int last = tableau.n_stages() - 1;
     state.time += accepted_step_size;
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
-        state.positions[b] = stage_position(step_start, last, b);
-        for (unsigned int j = 0; j <= last; ++j)
-          state.velocities[b].add(A_inverse(last, j) / accepted_step_size,
-                                  stages[j][b]);
+        const NodalVector x = equations.position(last, b);
+        state.velocities[b] = equations.velocity(last, b);
+        state.positions[b]  = x;
       }
-    state.multipliers = stage_multipliers[last];
+    state.multipliers = accepted_multipliers[last];
     update_laws(state, step_start);
   }
 

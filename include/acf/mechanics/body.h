@@ -7,6 +7,7 @@
 #include <acf/base/time_function.h>
 #include <acf/mechanics/body_operators.h>
 #include <acf/mechanics/functionals.h>
+#include <acf/mechanics/green_lagrange.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/mechanics/rotation.h>
 
@@ -19,6 +20,16 @@
 
 namespace ACF
 {
+  /** How the elastic energy of a body follows from its deformation. */
+  enum class StrainMeasure
+  {
+    /** Small strain in the frame of the body, see reduced_strain_force(). */
+    reduced,
+
+    /** See GreenLagrangeOperator. */
+    green_lagrange
+  };
+
   /** What a model file says of a body. */
   struct BodyParameters
   {
@@ -26,6 +37,7 @@ namespace ACF
     MeshParameters mesh;
     Material material;
     RotationMeasure rotation_measure = RotationMeasure::polar;
+    StrainMeasure strain_measure     = StrainMeasure::reduced;
 
     /** Rayleigh damping of the deformation: alpha, 1/s, and beta, s. */
     double mass_damping      = 0;
@@ -92,6 +104,10 @@ namespace ACF
       return constant_operators;
     }
 
+    /** Made when it is needed first. */
+    const GreenLagrangeOperator &
+    green_lagrange() const;
+
     /** Functionals through which joints and force elements act. */
     const std::vector<NodalFunctional> &
     functionals() const
@@ -123,6 +139,8 @@ namespace ACF
     Material material;
     BodyDiscretization finite_elements;
     BodyOperators constant_operators;
+    mutable std::unique_ptr<const GreenLagrangeOperator>
+      green_lagrange_operator;
     std::vector<NodalFunctional> marker_functionals;
 
     /** What was integrated over surfaces; many joints ask for the same. */
@@ -195,6 +213,12 @@ namespace ACF
     rotation_measure() const
     {
       return parameters.rotation_measure;
+    }
+
+    StrainMeasure
+    strain_measure() const
+    {
+      return parameters.strain_measure;
     }
 
     /** alpha, 1/s */

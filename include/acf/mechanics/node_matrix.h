@@ -95,6 +95,10 @@ namespace ACF
   public:
     explicit BlockNodeMatrix(const std::shared_ptr<const NodeGraph> &graph);
 
+    /** Sets all entries to a number. */
+    BlockNodeMatrix &
+    operator=(const double value);
+
     void
     add(const unsigned int row, const unsigned int col, const Matrix3 &block);
 

@@ -103,6 +103,7 @@ namespace ACF
    * @param stiffness_damping $\beta$, s
    * @param[out] force $f_a$, N; must have the size of @p positions
    * @param scratch work space; must have the size of @p positions
+   * @param with_elasticity whether k has the term $A q$
    * @return false, and no force, if the mean deformation gradient has no
    * rotation
    */
@@ -114,7 +115,8 @@ namespace ACF
                               const double mass_damping,
                               const double stiffness_damping,
                               NodalVector &force,
-                              NodalVector &scratch);
+                              NodalVector &scratch,
+                              const bool with_elasticity = true);
 } // namespace ACF
 
 #endif

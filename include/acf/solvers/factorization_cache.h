@@ -29,7 +29,10 @@ namespace ACF
     using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
     using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
 
-    JointedFactorization(const ReferenceBody &body, const Number shift);
+    /** @param stiffness A of the body, or a matrix in its place */
+    JointedFactorization(const ReferenceBody &body,
+                         const BlockNodeMatrix &stiffness,
+                         const Number shift);
 
     ShiftedFactorization<Number> &
     factorization()
@@ -76,7 +79,8 @@ namespace ACF
 
   /**
    * Keeps every factorisation that was ever needed: one per reference
-   * body and shift, in practice one per kind of body and step size.
+   * body and shift, in practice one per kind of body and step size. A body
+   * whose stiffness was replaced has factorisations of its own.
    */
   class FactorizationCache
   {
@@ -89,22 +93,42 @@ namespace ACF
     JointedFactorization<std::complex<double>> &
     get(const Body &body, const std::complex<double> shift);
 
+    /**
+     * Factorises this matrix in the place of A for one body from now on, and
+     * drops the factors with the last one.
+     * @param stiffness in the frame of the body
+     */
+    void
+    replace_stiffness(const Body &body,
+                      std::unique_ptr<const BlockNodeMatrix> stiffness);
+
+    /** Goes back to A. */
+    void
+    restore_stiffness(const Body &body);
+
   private:
+    /** Of a reference body, or of a body with a stiffness of its own. */
+    using Key = std::tuple<const void *, double, double>;
+
+    template <typename Number>
+    using Factors =
+      std::map<Key, std::unique_ptr<JointedFactorization<Number>>>;
+
     template <typename Number>
     JointedFactorization<Number> &
-    find_or_factorize(
-      std::map<std::tuple<const ReferenceBody *, double, double>,
-               std::unique_ptr<JointedFactorization<Number>>> &factors,
-      const Body &body,
-      const Number shift,
-      unsigned long &counter);
+    find_or_factorize(Factors<Number> &factors,
+                      const Body &body,
+                      const Number shift,
+                      unsigned long &counter);
 
-    using Key = std::tuple<const ReferenceBody *, double, double>;
+    template <typename Number>
+    void
+    drop(Factors<Number> &factors, const Body &body);
 
     Statistics &statistics;
-    std::map<Key, std::unique_ptr<JointedFactorization<double>>> real_factors;
-    std::map<Key, std::unique_ptr<JointedFactorization<std::complex<double>>>>
-      complex_factors;
+    Factors<double> real_factors;
+    Factors<std::complex<double>> complex_factors;
+    std::map<const Body *, std::unique_ptr<const BlockNodeMatrix>> stiffness;
   };
 } // namespace ACF
 

@@ -59,6 +59,11 @@ namespace ACF
      */
     ShiftedFactorization(const BodyOperators &body, const Number shift);
 
+    /** With another matrix in the place of A. */
+    ShiftedFactorization(const BodyOperators &body,
+                         const BlockNodeMatrix &stiffness,
+                         const Number shift);
+
     ~ShiftedFactorization();
 
     ShiftedFactorization(const ShiftedFactorization &) = delete;
@@ -83,7 +88,9 @@ namespace ACF
     class Mumps;
 
     void
-    check(const BodyOperators &body, const Number shift);
+    check(const BodyOperators &body,
+          const BlockNodeMatrix &stiffness,
+          const Number shift);
 
     unsigned int n_unknowns;
     std::unique_ptr<Mumps> mumps;

@@ -4,6 +4,7 @@
 #ifndef acf_solvers_tangent_system_h
 #define acf_solvers_tangent_system_h
 
+#include <acf/mechanics/elastic_force.h>
 #include <acf/solvers/coupled_system.h>
 
 #include <memory>
@@ -14,7 +15,8 @@ namespace ACF
    * The equations of a system at rest, linearised about a state,
    * \f[ K_T = \sum_b R_b (A_b + U_b B_b U_b^T) R_b^T + S^T G S, \qquad
    *     M + S^T M_L S, \qquad D, \f]
-   * with the exact derivative of the elastic forces (ReducedStrainTangent) and
+   * with the exact derivative of the elastic forces (ElasticTangent; the strain
+   * of Green and Lagrange has a matrix of its own for each state) and
    * the stiffness G of springs and of the multipliers of joints. Velocities
    * count as zero, and loads as constant: those that turn with a body have no
    * part in \f$K_T\f$.
@@ -40,8 +42,8 @@ namespace ACF
     apply_mass(SystemVector &y, const SystemVector &x) const;
 
     /**
-     * Makes solve() ready for the linearised state. Keeps the bodies'
-     * factorisations of the last shift.
+     * Makes solve() ready for the linearised state. Keeps the factorisations of
+     * bodies with the reduced strain while the shift stays.
      * @param shift $\sigma > 0$, 1/s^2
      * @throws SimulationError see CoupledSystem
      */
@@ -67,8 +69,7 @@ namespace ACF
     const MultibodySystem &system;
     Statistics &statistics;
 
-    std::vector<Matrix3> rotations;
-    std::vector<LowRankChange> changes;
+    std::vector<ElasticTangent> tangents;
     MarkerLinearization linearization;
     Eigen::SparseMatrix<double> G;
     Eigen::SparseMatrix<double> lumped_mass;

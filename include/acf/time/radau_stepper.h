@@ -4,8 +4,9 @@
 #ifndef acf_time_radau_stepper_h
 #define acf_time_radau_stepper_h
 
-#include <acf/solvers/stage_solver.h>
+#include <acf/time/stage_equations.h>
 
+#include <functional>
 #include <memory>
 #include <string>
 
@@ -61,14 +62,10 @@ namespace ACF
 
 
   /**
-   * Radau IIA for the index-3 equations of a multibody system. With
-   * $Z_i = U_i - u_n - c_i \tau v_n$ the stages satisfy
-   * \f[ \tau^{-2} (A_{RK}^{-2} \otimes M) Z + F(U, V) + B(U)^T \Lambda = P,
-   *     \qquad \Phi(U_i, t_n + c_i \tau) = 0, \f]
-   * the velocities are $V_i = v_n + \tau^{-1} \sum_j (A_{RK}^{-1})_{ij} Z_j$
-   * and the last stage ends the step. The stage equations are solved by a
-   * simplified Newton iteration whose linear systems are those of a
-   * StageSolver.
+   * Radau IIA for the index-3 equations of a multibody system: solves the
+   * StageEquations of each step, the last stage of which ends the step, by a
+   * simplified Newton iteration with the linear systems of a StageSolver, whose
+   * factorisations depend on the step size only.
    *
    * Convergence control follows RADAU5 (Hairer and Wanner, Sec. IV.8): with the
    * increments $|\Delta Z^k|$ and $\theta_k = |\Delta Z^k| / |\Delta Z^{k-1}|$
@@ -80,6 +77,14 @@ namespace ACF
    * stages. Errors of velocities and multipliers are those of Z divided by
    * $\tau$ and $\tau^2$, which is the usual weighting of index-2 and index-3
    * components.
+   *
+   * Where the iteration does not contract enough because the stiffness of the
+   * undeformed bodies is no good tangent any more, Newton's method with the
+   * exact tangent of those bodies takes its place (StageTangent); the
+   * StageSolver is then the preconditioner. From time to time the step goes
+   * back to the simplified iteration. If the step has been halved twice without
+   * success, bodies with the strain of Green and Lagrange get factorisations
+   * with their present tangent.
    */
   class RadauStepper
   {
@@ -108,58 +113,54 @@ namespace ACF
 
   private:
     void
-    predict(const SystemState &state, const double step_size);
+    predict(const SystemState &state);
 
-    /** Freezes the rotations of the predicted stages and the markers at their
-     * mean. */
+    /** Gives the stage solver the rotations and markers of the prediction. */
     void
-    prepare(const SystemState &state);
-
-    StageRotations
-    predicted_rotations(const SystemState &state) const;
-
-    bool
-    assemble_residual(const SystemState &state,
-                      StageVector &residual,
-                      StageConstraints &constraint_residual,
-                      std::string &failure);
-
-    /** Residual of a body at a stage without the forces on markers. */
-    bool
-    assemble_body_residual(const SystemState &state,
-                           const unsigned int stage,
-                           const unsigned int body,
-                           const NodalVector &position,
-                           const NodalVector &velocity,
-                           const NodalVector &acceleration,
-                           NodalVector &residual) const;
+    prepare();
 
     /**
-     * Corrects the positions of converged stages until nonlinear constraints
-     * hold up to round-off, without solves of bodies.
+     * Solves the linear system of an iteration.
+     * @param[in,out] r forces, replaced by increments
+     * @param[in,out] g constraints, replaced by increments of the multipliers
+     * @return false, and why, if a body is turned inside out
      */
-    void
-    correct_constraints(const SystemState &state);
+    using LinearSolver =
+      std::function<bool(StageVector &, StageConstraints &, std::string &)>;
 
-    NodalVector
-    stage_velocity(const SystemState &state,
-                   const unsigned int stage,
-                   const unsigned int body) const;
+    /** Iterates from the prediction to the tolerance, or to a failure. */
+    void
+    iterate(const LinearSolver &solve,
+            const unsigned int patience,
+            StepReport &report);
+
+    /** Newton's method with the exact tangent of the bodies that need it. */
+    void
+    iterate_exactly(StepReport &report);
+
+    /** Bodies whose last increments were not small beside the largest. */
+    void
+    choose_exact_bodies(const StageVector &increment);
+
+    /** Factorises the tangents of the prediction. @return false if there is
+     * nothing to refresh */
+    bool
+    refresh_factors();
+
+    /** Corrects the positions of converged stages until constraints hold up to
+     * round-off, without solves of bodies. */
+    void
+    correct_constraints();
 
     /** Law values of force elements, continuous from an earlier state. */
     void
     update_laws(SystemState &state, const SystemState &before) const;
 
     double
-    stage_time(const SystemState &state, const unsigned int stage) const;
+    increment_norm(const SystemVector &increment, const unsigned int b) const;
 
     double
     increment_norm(const StageVector &increment) const;
-
-    NodalVector
-    stage_position(const SystemState &state,
-                   const unsigned int stage,
-                   const unsigned int body) const;
 
     const MultibodySystem &system;
     const TimeParameters parameters;
@@ -167,14 +168,28 @@ namespace ACF
 
     const ButcherTableau tableau;
     const Eigen::MatrixXd A_inverse;
-    const Eigen::MatrixXd A_inverse_squared;
     FactorizationCache cache;
     std::unique_ptr<StageSolver> stage_solver;
 
-    /** Stages of the tried step, and of the accepted one before it. */
-    StageVector stages;
-    StageConstraints stage_multipliers;
-    double tried_step_size = 0;
+    /** The tried step. */
+    StageEquations equations;
+
+    StageRotations rotations;
+    std::unique_ptr<StageTangent> tangent;
+
+    /** Whether a body is linearised exactly if any is. */
+    std::vector<bool> exact;
+
+    /** Steps until the simplified iteration is tried again; the next such wait.
+     */
+    unsigned int exact_steps = 0;
+    unsigned int next_wait   = first_wait;
+
+    /** Failed tries since the last accepted step. */
+    unsigned int n_failures = 0;
+
+    static constexpr unsigned int first_wait   = 4;
+    static constexpr unsigned int longest_wait = 64;
 
     StageVector accepted_stages;
     StageConstraints accepted_multipliers;

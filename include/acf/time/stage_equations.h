@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_time_stage_equations_h
+#define acf_time_stage_equations_h
+
+#include <acf/solvers/stage_tangent.h>
+
+#include <string>
+
+namespace ACF
+{
+  /**
+   * The equations of the stages of one Radau IIA step from a state
+   * $(u_n, v_n)$: with $Z_i = U_i - u_n - c_i \tau v_n$
+   * \f[ \tau^{-2} (A_{RK}^{-2} \otimes M) Z + F(U, V) + B(U)^T \Lambda = P,
+   *     \qquad \Phi(U_i, t_n + c_i \tau) = 0, \qquad
+   *     V_i = v_n + \tau^{-1} \sum_j (A_{RK}^{-1})_{ij} Z_j . \f]
+   */
+  class StageEquations
+  {
+  public:
+    StageEquations(const MultibodySystem &system,
+                   const ButcherTableau &tableau,
+                   Statistics &statistics);
+
+    /**
+     * The step that the other functions are about.
+     * @param state must live as long as they are called
+     */
+    void
+    start_step(const SystemState &state, const double step_size);
+
+    double
+    step_size() const
+    {
+      return tau;
+    }
+
+    /** $U_i$ of a body, m. */
+    NodalVector
+    position(const unsigned int stage, const unsigned int body) const;
+
+    /** $V_i$ of a body, m/s. */
+    NodalVector
+    velocity(const unsigned int stage, const unsigned int body) const;
+
+    double
+    time(const unsigned int stage) const;
+
+    /**
+     * Forces that are missing for equilibrium, and minus the residuals of the
+     * constraints: the right-hand sides of a Newton iteration.
+     * @return false, and why, if a body is turned inside out
+     */
+    bool
+    residual(StageVector &forces,
+             StageConstraints &constraints,
+             std::string &failure) const;
+
+    /** $\Phi$ in each stage. */
+    StageConstraints
+    constraint_residual() const;
+
+    /**
+     * Rotations of the bodies in the stages; those of the start of the step
+     * where a stage has none.
+     * @throws SimulationError if the state at the start is turned inside out
+     */
+    StageRotations
+    rotations() const;
+
+    /** Linearisation of the markers at the mean of the stages. */
+    MarkerLinearization
+    mean_linearization() const;
+
+    /**
+     * The exact derivatives at the stages.
+     * @param exact the bodies for which the elastic force is linearised
+     * exactly, see StageTangent
+     * @return false if a body is turned inside out
+     */
+    bool
+    linearize(const std::vector<bool> &exact,
+              const StageRotations &rotations,
+              StageTangent &tangent) const;
+
+    /** Increments Z, m. */
+    StageVector increments;
+
+    /** $\Lambda$ */
+    StageConstraints multipliers;
+
+  private:
+    bool
+    body_residual(const unsigned int stage,
+                  const unsigned int body,
+                  const NodalVector &position,
+                  const NodalVector &velocity,
+                  const NodalVector &acceleration,
+                  NodalVector &residual) const;
+
+    SystemVector
+    positions(const unsigned int stage) const;
+
+    SystemVector
+    velocities(const unsigned int stage) const;
+
+    const MultibodySystem &system;
+    const ButcherTableau &tableau;
+    Statistics &statistics;
+    const Eigen::MatrixXd A_inverse;
+    const Eigen::MatrixXd A_inverse_squared;
+
+    const SystemState *state = nullptr;
+    double tau               = 0;
+  };
+} // namespace ACF
+
+#endif

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/console.h>
+#include <acf/base/exceptions.h>
+#include <acf/time/stage_equations.h>
+
+namespace ACF
+{
+  StageEquations::StageEquations(const MultibodySystem &system,
+                                 const ButcherTableau &tableau,
+                                 Statistics &statistics)
+    : system(system)
+    , tableau(tableau)
+    , statistics(statistics)
+    , A_inverse(tableau.A.inverse())
+    , A_inverse_squared(A_inverse * A_inverse)
+  {
+    SystemVector zero;
+    for (const Body &body : system.bodies())
+      zero.emplace_back(body.operators().n_unknowns());
+    increments.assign(tableau.n_stages(), zero);
+    multipliers.assign(tableau.n_stages(),
+                       Eigen::VectorXd::Zero(system.n_constraints()));
+  }
+
+
+
+  void
+  StageEquations::start_step(const SystemState &new_state,
+                             const double step_size)
+  {
+    state = &new_state;
+    tau   = step_size;
+  }
+
+
+
+  NodalVector
+  StageEquations::position(const unsigned int stage,
+                           const unsigned int body) const
+  {
+    NodalVector x(state->positions[body]);
+    x.add(tableau.c(stage) * tau,
+          state->velocities[body],
+          1.,
+          increments[stage][body]);
+    return x;
+  }
+
+
+
+  NodalVector
+  StageEquations::velocity(const unsigned int stage,
+                           const unsigned int body) const
+  {
+    NodalVector v(state->velocities[body]);
+    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+      v.add(A_inverse(stage, j) / tau, increments[j][body]);
+    return v;
+  }
+
+
+
+  double
+  StageEquations::time(const unsigned int stage) const
+  {
+    return state->time + tableau.c(stage) * tau;
+  }
+
+
+
+  SystemVector
+  StageEquations::positions(const unsigned int stage) const
+  {
+    SystemVector x;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      x.push_back(position(stage, b));
+    return x;
+  }
+
+
+
+  SystemVector
+  StageEquations::velocities(const unsigned int stage) const
+  {
+    SystemVector v;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      v.push_back(velocity(stage, b));
+    return v;
+  }
+
+
+
+  bool
+  StageEquations::body_residual(const unsigned int stage,
+                                const unsigned int b,
+                                const NodalVector &position,
+                                const NodalVector &velocity,
+                                const NodalVector &acceleration,
+                                NodalVector &residual) const
+  {
+    const Body &body = system.bodies()[b];
+    NodalVector work(position.size());
+    ++statistics.force_evaluations;
+    if (!internal_force(body, position, velocity, residual, work))
+      return false;
+    body.operators().mass_matrix.vmult(work, acceleration);
+    residual += work;
+    residual *= -1;
+    system.add_loads(b, time(stage), position, residual);
+    return true;
+  }
+
+
+
+  bool
+  StageEquations::residual(StageVector &forces,
+                           StageConstraints &constraints,
+                           std::string &failure) const
+  {
+    const double inverse_square = 1 / (tau * tau);
+    const unsigned int n_bodies = system.bodies().size();
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      {
+        const SystemVector x = positions(i);
+        SystemVector v(n_bodies), accelerations(n_bodies);
+        if (system.needs_velocities())
+          v = velocities(i);
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          {
+            accelerations[b].reinit(x[b].size());
+            for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+              accelerations[b].add(inverse_square * A_inverse_squared(i, j),
+                                   increments[j][b]);
+            if (!body_residual(
+                  i, b, x[b], v[b], accelerations[b], forces[i][b]))
+              {
+                failure = "body '" + system.bodies()[b].name() +
+                          "' is turned inside out (the determinant of a "
+                          "deformation gradient is not positive)";
+                return false;
+              }
+          }
+        if (system.n_marker_values() == 0)
+          continue;
+        const Eigen::VectorXd s = system.marker_values(x);
+        Eigen::VectorXd marker_velocities, marker_accelerations;
+        if (system.needs_velocities())
+          marker_velocities = system.marker_values(v);
+        if (!system.masses().empty())
+          marker_accelerations = system.marker_values(accelerations);
+        const Eigen::VectorXd F = system.marker_forces(time(i),
+                                                       s,
+                                                       marker_velocities,
+                                                       marker_accelerations,
+                                                       multipliers[i],
+                                                       state->law_values);
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          system.add_marker_forces(b, F, forces[i][b]);
+        constraints[i] = -system.constraint_residual(time(i), s);
+      }
+    return true;
+  }
+
+
+
+  StageConstraints
+  StageEquations::constraint_residual() const
+  {
+    StageConstraints residual;
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      residual.push_back(system.constraint_residual(positions(i), time(i)));
+    return residual;
+  }
+
+
+
+  StageRotations
+  StageEquations::rotations() const
+  {
+    const unsigned int n_stages = tableau.n_stages();
+    const unsigned int n_bodies = system.bodies().size();
+    StageRotations result;
+    result.mean.resize(n_bodies);
+    result.stages.assign(n_stages, result.mean);
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      {
+        const Body &body     = system.bodies()[b];
+        const auto rotate_to = [&body](const Matrix3 &F, Matrix3 &rotation) {
+          const std::optional<BodyRotation> frame =
+            body_rotation(F, body.rotation_measure());
+          if (frame)
+            rotation = frame->rotation;
+          return frame.has_value();
+        };
+        Matrix3 start;
+        if (!rotate_to(mean_deformation_gradient(body.operators(),
+                                                 state->positions[b]),
+                       start))
+          throw SimulationError("Body '" + body.name() +
+                                "' is turned inside out at time " +
+                                format_number(state->time) +
+                                " s: its mean deformation gradient has a "
+                                "determinant that is not positive.");
+        result.mean[b] = start;
+        Matrix3 mean;
+        for (unsigned int i = 0; i < n_stages; ++i)
+          {
+            result.stages[i][b] = start;
+            const Matrix3 F =
+              mean_deformation_gradient(body.operators(), position(i, b));
+            rotate_to(F, result.stages[i][b]);
+            mean += F / n_stages;
+          }
+        rotate_to(mean, result.mean[b]);
+      }
+    return result;
+  }
+
+
+
+  MarkerLinearization
+  StageEquations::mean_linearization() const
+  {
+    if (system.n_marker_values() == 0)
+      return {};
+    const unsigned int n   = tableau.n_stages();
+    Eigen::VectorXd s      = Eigen::VectorXd::Zero(system.n_marker_values());
+    Eigen::VectorXd v      = s;
+    Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.n_constraints());
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        s += system.marker_values(positions(i)) / n;
+        lambda += multipliers[i] / n;
+        if (system.needs_velocities())
+          v += system.marker_values(velocities(i)) / n;
+      }
+    return system.linearize(
+      state->time + 0.5 * tau, s, v, lambda, state->law_values);
+  }
+
+
+
+  bool
+  StageEquations::linearize(const std::vector<bool> &exact,
+                            const StageRotations &rotations,
+                            StageTangent &tangent) const
+  {
+    tangent.reset(tau, rotations);
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      {
+        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+          if (exact[b] && !tangent.linearize_body(i, b, position(i, b)))
+            return false;
+        if (system.n_marker_values() == 0)
+          continue;
+        const Eigen::VectorXd s = system.marker_values(positions(i));
+        Eigen::VectorXd v       = Eigen::VectorXd::Zero(s.size());
+        if (system.needs_velocities())
+          v = system.marker_values(velocities(i));
+        tangent.linearize_markers(
+          i,
+          system.linearize(time(i), s, v, multipliers[i], state->law_values));
+      }
+    return true;
+  }
+} // namespace ACF
