@@ -31,7 +31,7 @@ namespace ACF
         {"--set", "'Section/Entry=value'", "override an entry; repeatable"},
         {"--output-directory", "DIR", "override the output directory"},
         {"--threads", "N", "use at most N threads; default: one per core"},
-        {"--quiet", "", "print nothing but errors"}};
+        {"--quiet", "", "print nothing but errors and warnings"}};
       return list;
     }
 

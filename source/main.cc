@@ -48,7 +48,8 @@ main(int argc, char **argv)
   try
     {
       ACF::run_command(ACF::parse_command_line({argv + 1, argv + argc}),
-                       std::cout);
+                       std::cout,
+                       std::cerr);
       return 0;
     }
   catch (...)

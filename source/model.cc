@@ -113,6 +113,7 @@ namespace ACF
       declare_section(prm, "Start", model.start);
       declare_section(prm, "Time integration", model.time);
       declare_section(prm, "Modes", model.modes);
+      declare_section(prm, "Validity", model.validity);
       declare_section(prm, "Output", model.output);
       declare_named(prm,
                     "Probes",

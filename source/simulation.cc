@@ -180,6 +180,7 @@ namespace ACF
   std::string
   statistics_json(const Statistics &statistics,
                   const MultibodySystem &system,
+                  const ValidityMonitor *const validity,
                   const bool finished)
   {
     nlohmann::ordered_json json;
@@ -203,6 +204,7 @@ namespace ACF
     json["marker factorisations"]  = statistics.marker_factorizations;
     json["constraint corrections"] = statistics.constraint_corrections;
     json["stress evaluations"]     = statistics.stress_evaluations;
+    json["validity checks"]        = statistics.validity_checks;
     json["vtu files"]              = statistics.vtu_files;
     json["probe rows"]             = statistics.probe_rows;
     json["constraints"]            = system.n_constraints();
@@ -219,6 +221,13 @@ namespace ACF
         {"mass [kg]", body.operators().mass},
         {"volume [m^3]", body.operators().volume},
         {"operator memory [B]", body.operators().memory_consumption()}};
+    if (validity != nullptr)
+      for (unsigned int b = 0; b < system.bodies().size(); ++b)
+        for (unsigned int k = 0; k < ValidityMonitor::names().size(); ++k)
+          json["bodies"][system.bodies()[b].name()]["validity"]
+              [ValidityMonitor::names()[k]] = {
+                {"maximum", validity->maxima(b)[k].value},
+                {"time [s]", validity->maxima(b)[k].time}};
     json["factor entries"]          = statistics.factor_entries;
     json["factor memory [B]"]       = statistics.factor_bytes;
     json["joint column memory [B]"] = statistics.joint_column_bytes;
@@ -330,6 +339,7 @@ namespace ACF
   run_model(const Model &model,
             const std::filesystem::path &output_directory,
             std::ostream &stream,
+            std::ostream &warnings,
             const bool quiet)
   {
     Statistics statistics;
@@ -359,11 +369,20 @@ namespace ACF
     if (model.output.vtu.interval > 0)
       observers.push_back(std::make_unique<VtuOutput>(
         *system, output_directory, model.output.vtu, statistics));
+    ValidityMonitor *validity = nullptr;
+    if (model.validity.action != ValidityParameters::Action::ignore)
+      {
+        // the last one: when it stops a run, the others have seen the state
+        auto monitor = std::make_unique<ValidityMonitor>(
+          *system, model.validity, model.time.end_time, warnings, statistics);
+        validity = monitor.get();
+        observers.push_back(std::move(monitor));
+      }
     write_file(output_directory / "used_parameters.prm", model.used_parameters);
 
     const auto write_statistics = [&](const bool finished) {
       write_file(output_directory / "statistics.json",
-                 statistics_json(statistics, *system, finished));
+                 statistics_json(statistics, *system, validity, finished));
     };
     try
       {
@@ -388,6 +407,8 @@ namespace ACF
     if (!quiet)
       {
         describe_run(statistics, stream);
+        if (validity != nullptr)
+          validity->describe(stream);
         stream << "Results are in " << output_directory.string() << std::endl;
       }
   }
@@ -395,7 +416,9 @@ namespace ACF
 
 
   void
-  run_command(const CommandLine &command_line, std::ostream &stream)
+  run_command(const CommandLine &command_line,
+              std::ostream &stream,
+              std::ostream &warnings)
   {
     switch (command_line.action)
       {
@@ -427,7 +450,8 @@ namespace ACF
           {
             if (!command_line.quiet && !model.title.empty())
               stream << model.title << std::endl;
-            run_model(model, output_directory, stream, command_line.quiet);
+            run_model(
+              model, output_directory, stream, warnings, command_line.quiet);
           }
         else
           {

@@ -9,6 +9,7 @@
 #include <acf/io/vtu_output.h>
 #include <acf/time/modes.h>
 #include <acf/time/start.h>
+#include <acf/time/validity_monitor.h>
 
 namespace ACF
 {
@@ -37,6 +38,7 @@ namespace ACF
     StartParameters start;
     TimeParameters time;
     ModeParameters modes;
+    ValidityParameters validity;
     OutputParameters output;
     std::vector<ProbeParameters> probes;
 

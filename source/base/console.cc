@@ -109,6 +109,16 @@ namespace ACF
 
 
 
+  void
+  print_warning(std::ostream &stream, const std::string &message)
+  {
+    if (isatty(STDOUT_FILENO) && isatty(STDERR_FILENO))
+      stream << "\r\033[K";
+    stream << "acf-dealii: warning: " << message << "." << std::endl;
+  }
+
+
+
   bool
   standard_output_is_terminal()
   {

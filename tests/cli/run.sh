@@ -117,13 +117,40 @@ subsection Time integration
   set Step size = 0.01
 end
 END
-expect_status 0 drop.prm
+expect_status 0 --set 'Validity/Action=ignore' drop.prm
+check 'nobody watches the validity, but something is said of it' [ -z "$(grep Validity stdout)" ]
+check 'figures of the validity that nobody has watched' \
+  [ -z "$(grep '"validity"' drop-results/statistics.json)" ]
 expect_files drop-results statistics.json used_parameters.prm
-for counter in 'vtu files' 'probe rows' 'stress evaluations' 'marker factorisations' constraints real \
+for counter in 'vtu files' 'probe rows' 'stress evaluations' 'validity checks' 'marker factorisations' constraints real \
   'rejected steps' 'joint column memory \[B\]'; do
   expect_statistic drop-results "$counter" 0
 done
 expect_statistic drop-results steps 10
+
+# --- the validity of the strain ---
+
+# 11 states, as ten steps are fewer than the hundred checks of a run
+expect_status 0 drop.prm
+expect_text stdout 'a rigid fall' 'Validity: all bodies stayed within the limits'
+expect_statistic drop-results 'validity checks' 11
+
+# The pendulum bends from the first step on; its first check is at the start.
+soft=(--quiet "${no_vtu[@]}" --set "$(until_time 0.01)" --set 'Validity/Strain=1e-6')
+expect_status 0 --output-directory warns "${soft[@]}" "$pendulum"
+check '--quiet prints more than warnings' [ ! -s stdout ]
+expect_one_line 'a body beyond its limits'
+expect_text stderr 'a body beyond its limits' "acf-dealii: warning: the body 'pendulum' at time 0.001 s" \
+  '(limit 1e-06)'
+expect_statistic warns finished true
+expect_statistic warns 'validity checks' 11
+expect_status 1 --output-directory stops "${soft[@]}" --set 'Validity/Action=stop' "$pendulum"
+expect_one_line 'a body beyond its limits, and stop'
+expect_text stderr 'a body beyond its limits, and stop' "'Validity/Action'" "body 'pendulum' at time 0.001 s" \
+  '(limit 1e-06)' 'results up to this time are kept'
+expect_statistic stops finished false
+expect_statistic stops steps 1
+check 'rows of a run that was stopped' [ "$(wc -l <stops/probes.csv)" -eq 3 ]
 
 # --- failures ---
 

@@ -57,6 +57,13 @@ namespace ACF
     bool line_open = false;
   };
 
+  /**
+   * One line, "acf-dealii: warning: MESSAGE.", in place of the line of the
+   * Progress if both are on terminals.
+   */
+  void
+  print_warning(std::ostream &stream, const std::string &message);
+
   /** Whether standard output is a terminal. */
   bool
   standard_output_is_terminal();

@@ -66,6 +66,9 @@ namespace ACF
     /** Evaluations of von Mises stresses (bodies times output times). */
     unsigned long stress_evaluations = 0;
 
+    /** Checks of the strain's assumption (bodies times checked states). */
+    unsigned long validity_checks = 0;
+
     /** Files and rows written. */
     unsigned long vtu_files  = 0;
     unsigned long probe_rows = 0;

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/mechanics/strain_validity.h>
+
+#include <deal.II/base/symmetric_tensor.h>
+
+#include <deal.II/fe/fe_values.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace ACF
+{
+  namespace
+  {
+    using Strain = SymmetricTensor<2, dim>;
+
+    // Strains below this are round-off of positions; they are not compared.
+    constexpr double smallest_strain = 1e-10;
+
+
+
+    // Angle of the polar rotation of I + H.
+    double
+    rotation_angle(const Matrix3 &H)
+    {
+      const std::optional<BodyRotation> polar =
+        polar_rotation(H + Matrix3(unit_symmetric_tensor<dim>()));
+      if (!polar)
+        return numbers::PI;
+      const Matrix3 twice_skew = polar->rotation - transpose(polar->rotation);
+      return std::atan2(twice_skew.norm() / std::sqrt(2.),
+                        trace(polar->rotation) - 1);
+    }
+
+
+
+    // Integrals over the body: of e : C : e of the strain and of its neglected
+    // part, and of the product of both.
+    struct Energies
+    {
+      double strain = 0, neglected = 0, mixed = 0;
+
+      void
+      add(const Material &material,
+          const Strain &strain_at_point,
+          const Strain &neglected_at_point,
+          const double dV)
+      {
+        const auto product = [&](const Strain &a, const Strain &b) {
+          return dV * (material.lambda() * trace(a) * trace(b) +
+                       2 * material.mu() * (a * b));
+        };
+        strain += product(strain_at_point, strain_at_point);
+        neglected += product(neglected_at_point, neglected_at_point);
+        mixed += product(strain_at_point, neglected_at_point);
+      }
+    };
+
+
+
+    // The figures of all integration points.
+    void
+    judge_strains(const Body &body,
+                  const NodalVector &q,
+                  StrainValidity &validity)
+    {
+      const BodyDiscretization &space = body.discretization();
+      FEValues<dim> values(space.mesh().mapping(),
+                           space.scalar_element(),
+                           space.mesh().cell_quadrature(2),
+                           update_gradients | update_JxW_values);
+      std::vector<unsigned int> nodes(values.dofs_per_cell);
+      Energies energies;
+      Matrix3 most_turned;
+      double largest_skew = -1;
+      for (const auto &cell : space.dof_handler().active_cell_iterators())
+        {
+          values.reinit(
+            typename Triangulation<dim>::active_cell_iterator(cell));
+          space.get_nodes(cell, nodes);
+          for (const unsigned int point : values.quadrature_point_indices())
+            {
+              Matrix3 H;
+              for (const unsigned int i : values.dof_indices())
+                for (unsigned int c = 0; c < dim; ++c)
+                  H[c] += q[dim * nodes[i] + c] * values.shape_grad(i, point);
+              const Strain strain = symmetrize(H);
+              energies.add(body.material(),
+                           strain,
+                           0.5 * symmetrize(transpose(H) * H),
+                           values.JxW(point));
+              if (strain.norm() > validity.strain)
+                for (const double principal : eigenvalues(strain))
+                  validity.strain =
+                    std::max(validity.strain, std::abs(principal));
+              const double skew = (H - transpose(H)).norm_square();
+              if (skew > largest_skew)
+                {
+                  largest_skew = skew;
+                  most_turned  = H;
+                }
+            }
+        }
+
+      validity.rotation  = rotation_angle(most_turned);
+      const double floor = smallest_strain * smallest_strain *
+                           body.material().youngs_modulus *
+                           body.operators().volume;
+      const double scale        = std::max(energies.strain, floor);
+      validity.neglected_strain = std::sqrt(energies.neglected / scale);
+      validity.neglected_energy = 2 * std::abs(energies.mixed) / scale;
+    }
+
+
+
+    double
+    largest_deflection(const BodyOperators &body, const NodalVector &q)
+    {
+      // of a homogeneous body J = (tr(inertia) I / 2 - inertia) / mass
+      const Matrix3 J =
+        (0.5 * trace(body.inertia) * Matrix3(unit_symmetric_tensor<dim>()) -
+         body.inertia) /
+        body.mass;
+      const Matrix3 inverse = invert(12 * J);
+      double largest        = 0;
+      for (unsigned int a = 0; a < body.n_nodes; ++a)
+        {
+          Vector3 q_a;
+          for (unsigned int i = 0; i < dim; ++i)
+            q_a[i] = q[dim * a + i];
+          largest = std::max(largest, q_a * (inverse * q_a));
+        }
+      return std::sqrt(largest);
+    }
+  } // namespace
+
+
+
+  std::optional<StrainValidity>
+  strain_validity(const Body &body, const NodalVector &positions)
+  {
+    const std::optional<BodyRotation> frame =
+      body_rotation(mean_deformation_gradient(body.operators(), positions),
+                    body.rotation_measure());
+    if (!frame)
+      return {};
+
+    NodalVector q(positions.size());
+    co_rotated_displacement(body.operators(), positions, frame->rotation, q);
+    StrainValidity validity;
+    judge_strains(body, q, validity);
+    validity.deflection = largest_deflection(body.operators(), q);
+    return validity;
+  }
+} // namespace ACF
