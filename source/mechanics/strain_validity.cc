@@ -72,6 +72,7 @@ namespace ACF
                            space.mesh().cell_quadrature(2),
                            update_gradients | update_JxW_values);
       std::vector<unsigned int> nodes(values.dofs_per_cell);
+      const bool is_reduced = body.strain_measure() == StrainMeasure::reduced;
       Energies energies;
       Matrix3 most_turned;
       double largest_skew = -1;
@@ -86,10 +87,16 @@ namespace ACF
               for (const unsigned int i : values.dof_indices())
                 for (unsigned int c = 0; c < dim; ++c)
                   H[c] += q[dim * nodes[i] + c] * values.shape_grad(i, point);
-              const Strain strain = symmetrize(H);
+              Strain strain    = symmetrize(H);
+              Strain neglected = 0.5 * symmetrize(transpose(H) * H);
+              if (!is_reduced)
+                {
+                  strain += neglected;
+                  neglected = 0;
+                }
               energies.add(body.material(),
                            strain,
-                           0.5 * symmetrize(transpose(H) * H),
+                           neglected,
                            values.JxW(point));
               if (strain.norm() > validity.strain)
                 for (const double principal : eigenvalues(strain))

@@ -87,6 +87,19 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // The strain of Green and Lagrange is limited by its material only.
+    bool
+    is_judged(const Body &body, const Figure &figure)
+    {
+      return body.strain_measure() == StrainMeasure::reduced ||
+             figure.value == &StrainValidity::strain;
+    }
+  } // namespace
+
+
+
   void
   ValidityParameters::add_parameters(ParameterHandler &prm)
   {
@@ -177,7 +190,8 @@ namespace ACF
       {
         const Figure &figure = figures()[k];
         const double value   = (*found).*figure.value;
-        const double limit   = parameters.limits.*figure.value;
+        const double limit =
+          is_judged(body, figure) ? parameters.limits.*figure.value : 0.;
         if (value > record.maxima[k].value)
           record.maxima[k] = {value, state.time};
         if (limit > 0 && value > limit)
