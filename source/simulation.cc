@@ -113,10 +113,35 @@ namespace ACF
 
 
     void
+    describe_whole(const MultibodySystem &system,
+                   const std::string &name,
+                   std::ostream &stream)
+    {
+      unsigned int n_parts = 0;
+      double volume = 0, mass = 0;
+      for (const Body &body : system.bodies())
+        if (body.whole() == name)
+          {
+            ++n_parts;
+            volume += body.operators().volume;
+            mass += body.operators().mass;
+          }
+      stream << "Body '" << name << "': " << counted(n_parts, "part")
+             << ", volume " << format_number(volume) << " m^3, mass "
+             << format_number(mass) << " kg\n";
+    }
+
+
+
+    void
     describe_bodies(const MultibodySystem &system, std::ostream &stream)
     {
+      std::string whole;
       for (const Body &body : system.bodies())
         {
+          if (body.whole() != whole && !body.whole().empty())
+            describe_whole(system, body.whole(), stream);
+          whole                          = body.whole();
           const BodyOperators &operators = body.operators();
           const auto &mesh               = body.discretization().mesh();
           const Matrix3 &inertia         = operators.inertia;

@@ -194,38 +194,44 @@ namespace ACF
                 const std::string &text,
                 const std::string &entry)
     {
-      const SurfaceName name =
-        parse_surface_name(text, parameters.section(), entry);
-      const unsigned int b =
-        find_body(system.bodies(), name.body, parameters.section(), entry);
-      const BodyDiscretization &body = system.bodies()[b].discretization();
-      return {b,
-              surface_mean(body,
-                           body.mesh().surface(name.surface,
-                                               parameters.section(),
-                                               entry))};
+      const BodySurface found =
+        find_surface(text, system.bodies(), parameters.section(), entry);
+      return {found.body,
+              surface_mean(system.bodies()[found.body].discretization(),
+                           found.surface)};
     }
 
 
 
-    NodalFunctional
-    point_functional(const Body &body, const ProbeParameters &parameters)
+    // In the body of a name, or in the part of it that contains the point.
+    ProbeEnd
+    point_end(const MultibodySystem &system,
+              const ProbeParameters &parameters,
+              const std::string &name,
+              const std::string &entry)
     {
-      try
-        {
-          return material_point(body.discretization(),
-                                Point<dim>(parameters.point[0],
-                                           parameters.point[1],
-                                           parameters.point[2]));
-        }
-      catch (const SimulationError &error)
-        {
-          throw InputError(parameters.section(),
-                           "Point",
-                           error.what(),
-                           "a point of the body '" + body.name() +
-                             "' in the coordinates of its mesh");
-        }
+      const Point<dim> point(parameters.point[0],
+                             parameters.point[1],
+                             parameters.point[2]);
+      const auto candidates =
+        find_bodies(system.bodies(), name, parameters.section(), entry);
+      std::string problem;
+      for (const unsigned int b : candidates)
+        try
+          {
+            return {b,
+                    material_point(system.bodies()[b].discretization(), point)};
+          }
+        catch (const SimulationError &error)
+          {
+            problem = candidates.size() == 1 ? error.what()
+                                             : "a point outside all parts";
+          }
+      throw InputError(parameters.section(),
+                       "Point",
+                       problem,
+                       "a point of the body '" + name +
+                         "' in the coordinates of its mesh");
     }
   } // namespace
 
@@ -247,10 +253,10 @@ namespace ACF
       }
     if (type == "point position" || type == "point velocity")
       {
-        const unsigned int b =
-          find_body(system.bodies(), parameters.of, parameters.section(), "Of");
-        return std::make_unique<FunctionalProbe>(
-          b, point_functional(system.bodies()[b], parameters), velocity);
+        const ProbeEnd end = point_end(system, parameters, parameters.of, "Of");
+        return std::make_unique<FunctionalProbe>(end.body,
+                                                 end.functional,
+                                                 velocity);
       }
 
     const ProbeEnd from =
@@ -259,9 +265,13 @@ namespace ACF
     const unsigned int axis = parameters.axis[0] - 'x';
     std::optional<ProbeEnd> point;
     if (!parameters.point.empty())
-      point =
-        ProbeEnd{from.body,
-                 point_functional(system.bodies()[from.body], parameters)};
+      {
+        const Body &body = system.bodies()[from.body];
+        point            = point_end(system,
+                          parameters,
+                          body.whole().empty() ? body.name() : body.whole(),
+                          "From");
+      }
     if (type == "chord")
       return std::make_unique<ChordProbe>(from, to, point, axis);
     return std::make_unique<ChordFrameProbe>(system, from, to, *point, axis);

@@ -119,10 +119,17 @@ namespace ACF
 
   ReferenceBody::ReferenceBody(const BodyParameters &parameters,
                                const std::filesystem::path &directory)
+    : ReferenceBody(parameters,
+                    make_mesh(parameters.mesh, parameters.section(), directory))
+  {}
+
+
+
+  ReferenceBody::ReferenceBody(const BodyParameters &parameters,
+                               std::unique_ptr<const BodyMesh> body_mesh)
     : mesh(parameters.mesh)
     , material(parameters.material)
-    , finite_elements(
-        make_mesh(parameters.mesh, parameters.section(), directory))
+    , finite_elements(std::move(body_mesh))
     , constant_operators(
         assemble_body_operators(finite_elements, parameters.material))
   {}
@@ -277,8 +284,9 @@ namespace ACF
   NodalVector
   Body::initial_velocities() const
   {
-    const NodalVector x  = initial_positions();
-    const Vector3 centre = mass_mean(operators(), x);
+    const NodalVector x = initial_positions();
+    const Vector3 centre =
+      whole_centre ? *whole_centre : mass_mean(operators(), x);
     NodalVector v(x.size());
     for (unsigned int a = 0; a < operators().n_nodes; ++a)
       {

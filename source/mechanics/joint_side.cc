@@ -29,23 +29,92 @@ namespace ACF
 
 
 
-  unsigned int
-  find_body(const std::vector<Body> &bodies,
-            const std::string &name,
-            const std::string &section,
-            const std::string &entry)
+  std::vector<unsigned int>
+  find_bodies(const std::vector<Body> &bodies,
+              const std::string &name,
+              const std::string &section,
+              const std::string &entry)
   {
-    std::string names;
+    std::vector<unsigned int> found;
+    std::string names, whole;
     for (unsigned int b = 0; b < bodies.size(); ++b)
       {
-        if (bodies[b].name() == name)
-          return b;
-        names += (b > 0 ? ", " : "") + bodies[b].name();
+        if (bodies[b].name() == name || bodies[b].whole() == name)
+          found.push_back(b);
+        if (bodies[b].whole() != whole && !bodies[b].whole().empty())
+          names += (b > 0 ? ", " : "") + bodies[b].whole();
+        whole = bodies[b].whole();
+        names += (names.empty() ? "" : ", ") + bodies[b].name();
       }
+    if (found.empty() || name.empty())
+      throw InputError(section,
+                       entry,
+                       "the body '" + name + "', which does not exist",
+                       names);
+    return found;
+  }
+
+
+
+  std::vector<BodySurface>
+  find_surfaces(const std::string &text,
+                const std::vector<Body> &bodies,
+                const std::string &section,
+                const std::string &entry)
+  {
+    const SurfaceName name  = parse_surface_name(text, section, entry);
+    const auto candidates   = find_bodies(bodies, name.body, section, entry);
+    const auto mesh_of_body = [&](const unsigned int b) -> const BodyMesh & {
+      return bodies[b].discretization().mesh();
+    };
+    if (candidates.size() == 1)
+      return {
+        {candidates[0],
+         mesh_of_body(candidates[0]).surface(name.surface, section, entry)}};
+
+    std::vector<BodySurface> found;
+    std::set<std::string> names;
+    for (const unsigned int b : candidates)
+      for (const auto &[surface, ids] : mesh_of_body(b).surfaces())
+        {
+          names.insert(surface);
+          if (surface == name.surface)
+            found.push_back({b, ids});
+        }
+    std::string known;
+    for (const std::string &surface : names)
+      known += (known.empty() ? "'" : ", '") + surface + "'";
+    if (found.empty())
+      throw InputError(section,
+                       entry,
+                       "surface '" + name.surface +
+                         "', which the mesh does not have",
+                       known);
+    return found;
+  }
+
+
+
+  BodySurface
+  find_surface(const std::string &text,
+               const std::vector<Body> &bodies,
+               const std::string &section,
+               const std::string &entry)
+  {
+    const auto found = find_surfaces(text, bodies, section, entry);
+    if (found.size() == 1)
+      return found[0];
+    std::string parts;
+    for (const BodySurface &part : found)
+      parts += (parts.empty() ? "'" : ", '") + bodies[part.body].name() + "'";
+    const SurfaceName name = parse_surface_name(text, section, entry);
     throw InputError(section,
                      entry,
-                     "the body '" + name + "', which does not exist",
-                     names);
+                     "the surface '" + name.surface + "', which the parts " +
+                       parts + " share",
+                     "a surface of one part, such as '" +
+                       bodies[found[0].body].name() + ": " + name.surface +
+                       "'");
   }
 
 
@@ -131,12 +200,11 @@ namespace ACF
   {
     if (text == "ground")
       return;
-    const SurfaceName name = parse_surface_name(text, section, entry);
-    index                  = find_body(bodies, name.body, section, entry);
-    side_body              = &bodies[index];
-    surface =
-      side_body->discretization().mesh().surface(name.surface, section, entry);
-    geometry = side_body->reference().geometry(surface);
+    const BodySurface found = find_surface(text, bodies, section, entry);
+    index                   = found.body;
+    side_body               = &bodies[index];
+    surface                 = found.surface;
+    geometry                = side_body->reference().geometry(surface);
   }
 
 

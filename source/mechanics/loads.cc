@@ -75,20 +75,18 @@ namespace ACF
 
 
   SurfaceLoad::SurfaceLoad(const SurfaceLoadParameters &parameters,
-                           const std::vector<Body> &bodies)
-    : follows(parameters.follows)
+                           const std::vector<Body> &bodies,
+                           const BodySurface &place)
+    : body_index(place.body)
+    , follows(parameters.follows)
     , is_isotropic(parameters.type == "force" || parameters.type == "traction")
     , is_pressure(parameters.type == "pressure")
   {
-    const SurfaceName name =
-      parse_surface_name(parameters.on, parameters.section(), "On");
-    body_index       = find_body(bodies, name.body, parameters.section(), "On");
-    const Body &body = bodies[body_index];
+    const Body &body                = bodies[body_index];
     placement_rotation              = body.placement_rotation();
     const BodyDiscretization &space = body.discretization();
-    const auto &surface =
-      space.mesh().surface(name.surface, parameters.section(), "On");
-    const SurfaceGeometry geometry = surface_geometry(space, surface);
+    const Surface &surface          = place.surface;
+    const SurfaceGeometry geometry  = surface_geometry(space, surface);
 
     std::map<unsigned int, Matrix3> pattern;
     if (is_isotropic)
@@ -161,5 +159,25 @@ namespace ACF
         for (unsigned int i = 0; i < dim; ++i)
           force[dim * nodes[k] + i] += f[i];
       }
+  }
+
+
+
+  std::vector<SurfaceLoad>
+  make_surface_loads(const SurfaceLoadParameters &parameters,
+                     const std::vector<Body> &bodies)
+  {
+    const bool is_density =
+      (parameters.type == "traction" || parameters.type == "pressure");
+    std::vector<BodySurface> places;
+    if (is_density)
+      places = find_surfaces(parameters.on, bodies, parameters.section(), "On");
+    else
+      places = {
+        find_surface(parameters.on, bodies, parameters.section(), "On")};
+    std::vector<SurfaceLoad> loads;
+    for (const BodySurface &place : places)
+      loads.emplace_back(parameters, bodies, place);
+    return loads;
   }
 } // namespace ACF

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/mechanics/mesh.h>
+#include <acf/mechanics/mesh_division.h>
 #include <acf/mechanics/mesh_generation.h>
 #include <acf/mechanics/mesh_import.h>
 
@@ -174,6 +175,13 @@ namespace ACF
       "a surface with its image 'NAME both'. "
       "Units: none.",
       Patterns::Selection("none|x|y|z"));
+    prm.add_parameter(
+      "Cut",
+      cut,
+      "Where the body is divided into parts with rotations of their own: at "
+      "planes across an axis of the mesh, 'y: 0.25, 0.5'; into slices of equal "
+      "thickness, '4 along y'; or into the 'volumes' of the mesh file. Parts "
+      "are called 'NAME 1', 'NAME 2', ... or 'NAME VOLUME'. Units: m.");
   }
 
   bool
@@ -189,7 +197,9 @@ namespace ACF
                       p.cylinder_to,
                       p.cylinder_radius,
                       p.cells,
-                      p.mirror);
+                      p.mirror,
+                      p.cut,
+                      p.part);
     };
     return all(*this) == all(other);
   }
@@ -237,6 +247,7 @@ namespace ACF
                        (is_cylinder ? "a positive number for Mesh = "
                                     : "no value for Mesh = ") +
                          mesh);
+    parse_cut(cut, section);
     if (is_box)
       for (unsigned int d = 0; d < dim; ++d)
         if (!(box_from[d] < box_to[d]))
@@ -372,10 +383,10 @@ namespace ACF
     return make_quadrature<dim - 1>(is_simplex(), exact_degree, 13);
   }
 
-  std::unique_ptr<const BodyMesh>
-  make_mesh(const MeshParameters &parameters,
-            const std::string &section,
-            const std::filesystem::path &directory)
+  MeshData
+  make_mesh_data(const MeshParameters &parameters,
+                 const std::string &section,
+                 const std::filesystem::path &directory)
   {
     const ReferenceCell reference_cell = to_reference_cell(parameters.element);
     const MeshSource source{section, parameters.mesh};
@@ -405,6 +416,16 @@ namespace ACF
         check_cells(data, source);
         mirror_mesh(data, parameters.mirror[0] - 'x', source);
       }
-    return std::make_unique<const BodyMesh>(std::move(data), source);
+    return data;
+  }
+
+  std::unique_ptr<const BodyMesh>
+  make_mesh(const MeshParameters &parameters,
+            const std::string &section,
+            const std::filesystem::path &directory)
+  {
+    return std::make_unique<const BodyMesh>(
+      make_mesh_data(parameters, section, directory),
+      MeshSource{section, parameters.mesh});
   }
 } // namespace ACF

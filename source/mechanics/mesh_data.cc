@@ -4,7 +4,6 @@
 #include <acf/mechanics/mesh_data.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -21,41 +20,6 @@ namespace ACF
       for (const unsigned int vertex : vertices)
         result += Vector3(data.vertices[vertex]);
       return result / static_cast<double>(vertices.size());
-    }
-
-    /** Vertices of a face in ascending order; the fourth of a triangle is
-     * invalid. */
-    using FaceKey = std::array<unsigned int, 4>;
-
-    FaceKey
-    make_key(const std::vector<unsigned int> &vertices)
-    {
-      FaceKey key;
-      key.fill(numbers::invalid_unsigned_int);
-      std::copy(vertices.begin(), vertices.end(), key.begin());
-      std::sort(key.begin(), key.end());
-      return key;
-    }
-
-    /** All faces of all cells with their cells, sorted by faces. */
-    std::vector<std::pair<FaceKey, unsigned int>>
-    make_face_table(const MeshData &data)
-    {
-      const ReferenceCell &reference_cell = data.reference_cell;
-      std::vector<std::pair<FaceKey, unsigned int>> table;
-      for (unsigned int c = 0; c < data.cells.size(); ++c)
-        for (const unsigned int f : reference_cell.face_indices())
-          {
-            const auto n = reference_cell.face_reference_cell(f).n_vertices();
-            std::vector<unsigned int> vertices(n);
-            for (unsigned int v = 0; v < n; ++v)
-              vertices[v] =
-                data.cells[c]
-                  .vertices[reference_cell.face_to_cell_vertices(f, v, 1)];
-            table.emplace_back(make_key(vertices), c);
-          }
-      std::sort(table.begin(), table.end());
-      return table;
     }
 
     /** Determinant of the derivative of the trilinear map at @p xi, relative to
@@ -234,7 +198,7 @@ namespace ACF
       std::map<FaceKey, types::boundary_id> known;
       for (const CellData<dim - 1> &face : data.faces)
         {
-          const FaceKey key   = make_key(face.vertices);
+          const FaceKey key   = make_face_key(face.vertices);
           const auto first    = std::lower_bound(table.begin(),
                                               table.end(),
                                               std::make_pair(key, 0U));
@@ -286,6 +250,36 @@ namespace ACF
            std::to_string(
              data.cell_numbers.empty() ? index + 1 : data.cell_numbers[index]) +
            " at " + describe_point(centre(data, data.cells[index].vertices));
+  }
+
+  FaceKey
+  make_face_key(const std::vector<unsigned int> &vertices)
+  {
+    FaceKey key;
+    key.fill(numbers::invalid_unsigned_int);
+    std::copy(vertices.begin(), vertices.end(), key.begin());
+    std::sort(key.begin(), key.end());
+    return key;
+  }
+
+  std::vector<std::pair<FaceKey, unsigned int>>
+  make_face_table(const MeshData &data)
+  {
+    const ReferenceCell &reference_cell = data.reference_cell;
+    std::vector<std::pair<FaceKey, unsigned int>> table;
+    for (unsigned int c = 0; c < data.cells.size(); ++c)
+      for (const unsigned int f : reference_cell.face_indices())
+        {
+          const auto n = reference_cell.face_reference_cell(f).n_vertices();
+          std::vector<unsigned int> vertices(n);
+          for (unsigned int v = 0; v < n; ++v)
+            vertices[v] =
+              data.cells[c]
+                .vertices[reference_cell.face_to_cell_vertices(f, v, 1)];
+          table.emplace_back(make_face_key(vertices), c);
+        }
+    std::sort(table.begin(), table.end());
+    return table;
   }
 
   void

@@ -4,6 +4,7 @@
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/elastic_force.h>
 #include <acf/mechanics/multibody_system.h>
+#include <acf/mechanics/sub_bodies.h>
 
 #include <deal.II/base/numbers.h>
 
@@ -63,28 +64,31 @@ namespace ACF
 
 
 
-  void
-  MultibodySystem::make_bodies(const std::vector<BodyParameters> &parameters,
+  std::vector<JointParameters>
+  MultibodySystem::make_bodies(const SystemParameters &parameters,
                                const std::filesystem::path &directory)
   {
-    for (const BodyParameters &body : parameters)
-      {
-        auto reference =
-          std::find_if(reference_bodies.begin(),
-                       reference_bodies.end(),
-                       [&](const std::shared_ptr<ReferenceBody> &candidate) {
-                         return candidate->fits(body);
-                       });
-        if (reference == reference_bodies.end())
-          {
-            reference_bodies.push_back(
-              std::make_shared<ReferenceBody>(body, directory));
-            reference = reference_bodies.end() - 1;
-          }
-        system_bodies.emplace_back(body, *reference);
-        damped = damped || system_bodies.back().is_damped();
-      }
+    SystemBodies made = ACF::make_bodies(parameters.bodies, directory);
+    reference_bodies  = std::move(made.references);
+    system_bodies     = std::move(made.bodies);
     markers.resize(system_bodies.size());
+    for (const Body &body : system_bodies)
+      damped = damped || body.is_damped();
+
+    std::vector<JointParameters> joints = parameters.joints;
+    for (const JointParameters &glue : made.joints)
+      {
+        for (const JointParameters &joint : joints)
+          if (joint.name == glue.name)
+            throw InputError("Joints",
+                             "Names",
+                             "'" + joint.name +
+                               "', the name of the joint between two parts of "
+                               "a body",
+                             "another name");
+        joints.push_back(glue);
+      }
+    return joints;
   }
 
 
@@ -94,8 +98,7 @@ namespace ACF
     : gravity_acceleration(parameters.loads.gravity)
     , gravity_factor(parameters.loads.gravity_factor, "Loads", "Gravity factor")
   {
-    make_bodies(parameters.bodies, directory);
-    for (const JointParameters &joint : parameters.joints)
+    for (const JointParameters &joint : make_bodies(parameters, directory))
       {
         system_joints.push_back(make_joint(joint, system_bodies));
         first_rows.push_back(n_rows);
@@ -115,7 +118,8 @@ namespace ACF
         mass_markers.push_back(register_markers(lumped_masses.back().markers));
       }
     for (const SurfaceLoadParameters &load : parameters.surface_loads)
-      surface_loads.emplace_back(load, system_bodies);
+      for (const SurfaceLoad &part : make_surface_loads(load, system_bodies))
+        surface_loads.push_back(part);
     number_markers();
     repeated = repeated_constraints(marker_values(placement()));
   }

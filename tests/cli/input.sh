@@ -141,6 +141,13 @@ expect_error 's/= box$/= nowhere.geo/;/Box /d;/Cells/d' 4 Bodies/block Mesh "'no
 expect_error "s|= box$|= $top/tests/data/flat_square.geo|;/Box /d;/Cells/d" 4 Bodies/block Mesh \
   "'$top/tests/data/flat_square.geo': a mesh without volume elements" 'three-dimensional meshes'
 expect_error "s|= box$|= $top/tests/data/cylinder.geo|;/Box /d;/Cells/d" 5 Bodies/block Element hexahedron 'tetrahedron for this mesh'
+expect_error 's/^ *set Cells .*/&\n    set Cut = 4 along r/' 9 Bodies/block Cut "'4 along r'" "nothing, planes across an axis" "'volumes'"
+expect_error 's/^ *set Cells .*/&\n    set Cut = 4 along x/' 9 Bodies/block Cut 'the part 1 to x = 0.25 m, in which no cell' 'planes between 0 and 1 m'
+
+sed 's/^ *set Cells .*/    set Cells = 2, 1, 1\n    set Cut = 2 along x/' good.prm >cut.prm
+expect_status 0 --validate cut.prm
+expect_text stdout 'a body in parts' "Body 'block': 2 parts, volume 1 m^3" "Body 'block 1': 1 quadratic" \
+  "Body 'block 2': 1 quadratic" '2 joints with 12 constraints'
 
 sed 's/subsection block/subsection brick/' good.prm >wrong.prm
 expect_status 2 --validate wrong.prm

@@ -34,6 +34,10 @@ namespace ACF
   struct BodyParameters
   {
     std::string name;
+
+    /** Name of the body that this one is a part of; empty: of none. */
+    std::string whole;
+
     MeshParameters mesh;
     Material material;
     RotationMeasure rotation_measure = RotationMeasure::polar;
@@ -68,7 +72,7 @@ namespace ACF
     std::string
     section() const
     {
-      return "Bodies/" + name;
+      return "Bodies/" + (whole.empty() ? name : whole);
     }
   };
 
@@ -87,6 +91,10 @@ namespace ACF
      */
     ReferenceBody(const BodyParameters &parameters,
                   const std::filesystem::path &directory);
+
+    /** With a mesh that exists already. */
+    ReferenceBody(const BodyParameters &parameters,
+                  std::unique_ptr<const BodyMesh> body_mesh);
 
     /** Whether a body with these parameters can share it. */
     bool
@@ -170,6 +178,13 @@ namespace ACF
     name() const
     {
       return parameters.name;
+    }
+
+    /** Name of the body that this one is a part of; empty: of none. */
+    const std::string &
+    whole() const
+    {
+      return parameters.whole;
     }
 
     /** Path of the body's subsection in the model file. */
@@ -267,6 +282,16 @@ namespace ACF
     NodalVector
     initial_velocities() const;
 
+    /**
+     * For a part: the centre of mass at the start of the whole body, whose
+     * velocity and about which the angular velocity are those of the model, m.
+     */
+    void
+    set_whole_centre(const Vector3 &centre)
+    {
+      whole_centre = centre;
+    }
+
   private:
     /** A field of the mesh's coordinates at the nodes, turned by $R_0$. */
     NodalVector
@@ -277,6 +302,7 @@ namespace ACF
     Matrix3 initial_rotation;
     VectorField displacement;
     VectorField velocity;
+    std::optional<Vector3> whole_centre;
   };
 } // namespace ACF
 

@@ -29,14 +29,39 @@ namespace ACF
                      const std::string &entry);
 
   /**
-   * The body of a name.
+   * The body of a name, or all parts of the divided body of that name.
    * @throws InputError that names the bodies that exist
    */
-  unsigned int
-  find_body(const std::vector<Body> &bodies,
-            const std::string &name,
-            const std::string &section,
-            const std::string &entry);
+  std::vector<unsigned int>
+  find_bodies(const std::vector<Body> &bodies,
+              const std::string &name,
+              const std::string &section,
+              const std::string &entry);
+
+  /** A surface of one of the bodies. */
+  struct BodySurface
+  {
+    unsigned int body;
+    Surface surface;
+  };
+
+  /**
+   * The surface "BODY: SURFACE"; of a divided body, those of the parts that
+   * have some of it.
+   * @throws InputError that names the bodies or surfaces that exist
+   */
+  std::vector<BodySurface>
+  find_surfaces(const std::string &text,
+                const std::vector<Body> &bodies,
+                const std::string &section,
+                const std::string &entry);
+
+  /** The same, @throws InputError also if several parts share the surface */
+  BodySurface
+  find_surface(const std::string &text,
+               const std::vector<Body> &bodies,
+               const std::string &section,
+               const std::string &entry);
 
 
 

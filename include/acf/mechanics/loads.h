@@ -74,9 +74,9 @@ namespace ACF
   class SurfaceLoad
   {
   public:
-    /** @throws InputError */
     SurfaceLoad(const SurfaceLoadParameters &parameters,
-                const std::vector<Body> &bodies);
+                const std::vector<Body> &bodies,
+                const BodySurface &place);
 
     unsigned int
     body() const
@@ -113,6 +113,15 @@ namespace ACF
     std::vector<Matrix3> patterns;
     TimeVectorFunction value;
   };
+
+  /**
+   * A load, one for each part of a divided body that has some of the surface.
+   * @throws InputError if there is no such surface, or parts share one that
+   *   carries a force or a torque
+   */
+  std::vector<SurfaceLoad>
+  make_surface_loads(const SurfaceLoadParameters &parameters,
+                     const std::vector<Body> &bodies);
 } // namespace ACF
 
 #endif

@@ -51,6 +51,12 @@ namespace ACF
     /** "none", or the normal "x", "y" or "z" of the plane of symmetry. */
     std::string mirror = "none";
 
+    /** How the mesh is divided into parts, see parse_cut(). */
+    std::string cut;
+
+    /** The part of the mesh that is meant; empty: the whole. No entry. */
+    std::string part;
+
     /**
      * Declare the entries in the current subsection of @p prm.
      * @pre the object stays where it is until @p prm has been parsed
@@ -153,12 +159,18 @@ namespace ACF
   };
 
   /**
-   * Read or generate the mesh of a body.
+   * Read or generate the mesh of a body, undivided, as plain data.
    * @pre MeshParameters::check() has passed
    * @param section path of the body's subsection, for errors
    * @param directory relative file names start here: that of the model file
    * @throws InputError
    */
+  MeshData
+  make_mesh_data(const MeshParameters &parameters,
+                 const std::string &section,
+                 const std::filesystem::path &directory);
+
+  /** The same, checked. */
   std::unique_ptr<const BodyMesh>
   make_mesh(const MeshParameters &parameters,
             const std::string &section,

@@ -12,9 +12,11 @@
 #include <deal.II/grid/reference_cell.h>
 #include <deal.II/grid/tria_description.h>
 
+#include <array>
 #include <map>
 #include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace ACF
@@ -74,6 +76,17 @@ namespace ACF
   /** "(0, 0.5, 1)" */
   std::string
   describe_point(const Point<dim> &point);
+
+  /** Vertices of a face in ascending order; the fourth of a triangle is
+   * invalid. */
+  using FaceKey = std::array<unsigned int, 4>;
+
+  FaceKey
+  make_face_key(const std::vector<unsigned int> &vertices);
+
+  /** All faces of all cells with their cells, sorted by faces. */
+  std::vector<std::pair<FaceKey, unsigned int>>
+  make_face_table(const MeshData &data);
 
   /**
    * Stop unless all cells have positive Jacobians, at 27 points of each

@@ -333,8 +333,9 @@ namespace ACF
     }
 
   private:
-    void
-    make_bodies(const std::vector<BodyParameters> &parameters,
+    /** @return the joints of the model and those that hold parts together */
+    std::vector<JointParameters>
+    make_bodies(const SystemParameters &parameters,
                 const std::filesystem::path &directory);
 
     /** Numbers in the system of the markers of a set. */
