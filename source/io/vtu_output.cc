@@ -201,6 +201,7 @@ namespace ACF
       const BodyDiscretization &space = body.discretization();
       const double lambda             = body.material().lambda();
       const double mu                 = body.material().mu();
+      const bool is_reduced = body.strain_measure() == StrainMeasure::reduced;
 
       FEValues<dim> values(space.mesh().mapping(),
                            space.scalar_element(),
@@ -223,10 +224,20 @@ namespace ACF
                 for (unsigned int c = 0; c < dim; ++c)
                   gradient[c] +=
                     q[dim * nodes[i] + c] * values.shape_grad(i, point);
-              const SymmetricTensor<2, dim> strain = symmetrize(gradient);
-              stresses[nodes[point]] +=
+              SymmetricTensor<2, dim> strain = symmetrize(gradient);
+              if (!is_reduced)
+                strain += 0.5 * symmetrize(transpose(gradient) * gradient);
+              SymmetricTensor<2, dim> stress =
                 lambda * trace(strain) * unit_symmetric_tensor<dim>() +
                 2 * mu * strain;
+              if (!is_reduced)
+                {
+                  const Matrix3 F =
+                    gradient + Matrix3(unit_symmetric_tensor<dim>());
+                  stress = symmetrize(F * Matrix3(stress) * transpose(F)) /
+                           determinant(F);
+                }
+              stresses[nodes[point]] += stress;
               ++n_cells[nodes[point]];
             }
         }

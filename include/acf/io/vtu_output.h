@@ -38,8 +38,11 @@ namespace ACF
    *     s = \mathrm{dev}(\lambda\, \mathrm{tr}(\varepsilon) I +
    *                      2 \mu \varepsilon), \quad
    *     \varepsilon = \mathrm{Sym}(\nabla q) \f]
-   * with the co-rotated displacement q. The stress tensors of the cells at a
-   * node are averaged with equal weights before $\sigma_v$ is taken.
+   * with the co-rotated displacement q; with the strain of Green and Lagrange E
+   * that of Cauchy's stress
+   * \f$(\det F)^{-1} F (\lambda\, \mathrm{tr}(E) I + 2 \mu E) F^T\f$. The
+   * stress tensors of the cells at a node are averaged with equal weights
+   * before $\sigma_v$ is taken.
    *
    * @param positions $x_a$, m
    * @return one value per node; nothing if the mean deformation gradient has no
