@@ -148,6 +148,12 @@ sed 's/^ *set Cells .*/    set Cells = 2, 1, 1\n    set Cut = 2 along x/' good.p
 expect_status 0 --validate cut.prm
 expect_text stdout 'a body in parts' "Body 'block': 2 parts, volume 1 m^3" "Body 'block 1': 1 quadratic" \
   "Body 'block 2': 1 quadratic" '2 joints with 12 constraints'
+sed "s|= box$|= $top/tests/data/three_volumes.geo|; /Box /d; /Element/d; s/^ *set Cells .*/    set Cut = volumes/
+  s/block: x min/block: start/; s/block: x max/block nose: bottom/; s/Of   = wall/Of   = block disk + block nose/" \
+  good.prm >cut.prm
+expect_status 0 --validate cut.prm
+expect_text stdout 'a body in volumes' "Body 'block': 3 parts, volume 4 m^3" "Body 'block shaft'" \
+  '3 joints with 18 constraints'
 
 sed 's/subsection block/subsection brick/' good.prm >wrong.prm
 expect_status 2 --validate wrong.prm
