@@ -17,8 +17,8 @@ namespace ACF
    * $\varepsilon = \mathrm{Sym}(H)$ and the Green-Lagrange strain
    * $E = \varepsilon + \frac12 H^T H$ they are the following maxima or, where
    * the norm is $\|e\|^2 = \int e : C : e\, dV$ with the elasticity tensor,
-   * means over the body. With the strain of Green and Lagrange E takes the place
-   * of $\varepsilon$, and nothing is neglected.
+   * means over the body. With the strain of Green and Lagrange E takes the
+   * place of $\varepsilon$, and nothing is neglected.
    */
   struct StrainValidity
   {
