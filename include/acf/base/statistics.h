@@ -55,7 +55,7 @@ namespace ACF
     /** Factorised systems of the markers of joints and force elements. */
     unsigned long marker_factorizations = 0;
 
-    /** Corrections of nonlinear constraints without solves of bodies. */
+    /** Corrections of constraints up to round-off, without solves of bodies. */
     unsigned long constraint_corrections = 0;
 
     /** Largest residual of the constraints at ends of steps: of positions, m or
