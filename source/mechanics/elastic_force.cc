@@ -5,22 +5,6 @@
 
 namespace ACF
 {
-  namespace
-  {
-    void
-    rotate(const Matrix3 &R, const NodalVector &x, NodalVector &y)
-    {
-      for (unsigned int k = 0; k < x.size(); k += dim)
-        {
-          const Vector3 value = R * Vector3({x[k], x[k + 1], x[k + 2]});
-          for (unsigned int i = 0; i < dim; ++i)
-            y[k + i] = value[i];
-        }
-    }
-  } // namespace
-
-
-
   std::optional<double>
   elastic_force(const Body &body,
                 const NodalVector &positions,
@@ -102,7 +86,9 @@ namespace ACF
         return;
       }
     NodalVector local(x.size()), product(x.size());
-    rotate(transpose(rotation()), x, local);
+    const NodeRotations frame(rotation());
+    const unsigned int n = body->operators().n_nodes;
+    frame.to_body(x, n, local);
     body->operators().stiffness_matrix.vmult(product, local);
     if (reduced.columns.cols() > 0)
       {
@@ -111,22 +97,20 @@ namespace ACF
           reduced.columns *
           (reduced.coefficients * (reduced.columns.transpose() * w));
       }
-    rotate(rotation(), product, y);
+    frame.to_world(product, n, y);
   }
 
 
 
   std::unique_ptr<const BlockNodeMatrix>
-  ElasticTangent::matrix() const
+  ElasticTangent::matrix(const NodeRotations &frames) const
   {
     if (positions.size() == 0)
       return {};
     auto matrix =
       std::make_unique<BlockNodeMatrix>(body->operators().stiffness_matrix);
     *matrix = 0.;
-    body->reference().green_lagrange().add_tangent(positions,
-                                                   rotation(),
-                                                   *matrix);
+    body->reference().green_lagrange().add_tangent(positions, frames, *matrix);
     return matrix;
   }
 } // namespace ACF

@@ -282,14 +282,13 @@ namespace ACF
 
   void
   GreenLagrangeOperator::add_tangent(const NodalVector &positions,
-                                     const Matrix3 &rotation,
+                                     const NodeRotations &rotations,
                                      BlockNodeMatrix &matrix) const
   {
     const Vector3 origin = first_node(positions);
-    const Matrix3 R_t    = transpose(rotation);
     const unsigned int n = n_shape_functions;
     Values x;
-    // of one lane: with F' = R^T F the blocks are those of the frame
+    // of one lane
     std::vector<Vector3> grad(n);
     std::vector<Matrix3> blocks(n * n);
     for (unsigned int cell = 0; cell < n_cells; ++cell)
@@ -309,7 +308,6 @@ namespace ACF
                   F[i][j]       = F_lanes[i][j][lane];
                   inverse[i][j] = J[i][j][lane];
                 }
-            F                         = R_t * F;
             const double dV           = weights[batch * n_points + q][lane];
             SymmetricTensor<2, dim> E = 0.5 * symmetrize(transpose(F) * F) -
                                         0.5 * unit_symmetric_tensor<dim>();
@@ -341,10 +339,68 @@ namespace ACF
           }
         for (unsigned int a = 0; a < n; ++a)
           for (unsigned int b = 0; b < n; ++b)
-            matrix.add(nodes[(batch * n + a) * n_lanes + lane],
-                       nodes[(batch * n + b) * n_lanes + lane],
-                       blocks[a * n + b]);
+            {
+              const unsigned int node_a =
+                nodes[(batch * n + a) * n_lanes + lane];
+              const unsigned int node_b =
+                nodes[(batch * n + b) * n_lanes + lane];
+              matrix.add(node_a,
+                         node_b,
+                         transpose(rotations[node_a]) * blocks[a * n + b] *
+                           rotations[node_b]);
+            }
       }
+  }
+
+
+
+  std::vector<Matrix3>
+  GreenLagrangeOperator::node_gradients(const NodalVector &positions) const
+  {
+    AssertDimension(positions.size(), dim * n_nodes);
+    const Vector3 origin = first_node(positions);
+    AlignedVector<Matrix> integrals(n_batches);
+    AlignedVector<Lanes> volumes(n_batches);
+    const auto integrate = [&](const unsigned int begin,
+                               const unsigned int end) {
+      Values x;
+      for (unsigned int batch = begin; batch < end; ++batch)
+        {
+          gather(positions, origin, batch, x);
+          Matrix integral;
+          Lanes volume = 0.;
+          for (unsigned int q = 0; q < n_points; ++q)
+            {
+              const Lanes dV = weights[batch * n_points + q];
+              integral += dV * gradient(x, batch, q);
+              volume += dV;
+            }
+          integrals[batch] = integral;
+          volumes[batch]   = volume;
+        }
+    };
+    parallel::apply_to_subranges(0U, n_batches, integrate, grain);
+
+    std::vector<Matrix3> gradients(n_nodes);
+    const auto average = [&](const unsigned int begin, const unsigned int end) {
+      for (unsigned int a = begin; a < end; ++a)
+        {
+          double volume = 0;
+          for (unsigned int k = node_start[a]; k < node_start[a + 1]; ++k)
+            {
+              const unsigned int batch =
+                node_entries[k] / (n_shape_functions * n_lanes);
+              const unsigned int lane = node_entries[k] % n_lanes;
+              volume += volumes[batch][lane];
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = 0; j < dim; ++j)
+                  gradients[a][i][j] += integrals[batch][i][j][lane];
+            }
+          gradients[a] /= volume;
+        }
+    };
+    parallel::apply_to_subranges(0U, n_nodes, average, n_lanes * grain);
+    return gradients;
   }
 
 

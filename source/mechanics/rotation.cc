@@ -139,6 +139,28 @@ namespace ACF
 
 
 
+  std::optional<Matrix3>
+  nearest_rotation(const Matrix3 &deformation_gradient)
+  {
+    if (!preserves_orientation(deformation_gradient))
+      return {};
+    // a stretch of 2^k takes about k + 5 iterations
+    constexpr unsigned int max_iterations = 40;
+    Matrix3 R                             = deformation_gradient;
+    for (unsigned int k = 0; k < max_iterations; ++k)
+      {
+        const Matrix3 next  = 0.5 * (R + transpose(invert(R)));
+        const double change = (next - R).norm_square();
+        R                   = next;
+        // quadratic: the next change is of the order of this one squared
+        if (change < 1e-16)
+          return R;
+      }
+    return {};
+  }
+
+
+
   Matrix3
   rotation_matrix(const Vector3 &v)
   {

@@ -56,7 +56,7 @@ namespace ACF
   void
   CoupledSystem<Number>::prepare(
     const std::vector<BodyMatrix<Number>> &matrices,
-    const std::vector<Matrix3> &body_rotations,
+    const std::vector<NodeRotations> &node_rotations,
     const MarkerLinearization &linearization,
     const MarkerCoefficients<Number> &coefficients,
     const std::vector<LowRankChange> &terms)
@@ -64,14 +64,21 @@ namespace ACF
     const unsigned int n_bodies = system.bodies().size();
     factors.resize(n_bodies);
     scales.resize(n_bodies);
-    rotations.resize(n_bodies);
+    rotations.resize(system.n_marker_values() / dim);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
-        factors[b] = &cache.get(system.bodies()[b], matrices[b].shift);
-        scales[b]  = matrices[b].scale;
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            rotations[b](i, j) = body_rotations[b][i][j];
+        factors[b]          = &cache.get(system.bodies()[b], matrices[b].shift);
+        scales[b]           = matrices[b].scale;
+        const auto &markers = system.body_markers(b);
+        for (unsigned int p = 0; p < markers.size(); ++p)
+          {
+            const NodalFunctional &functional =
+              system.bodies()[b].reference().functionals()[markers[p]];
+            const Matrix3 &R = node_rotations[b][functional.nodes[0]];
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                rotations[system.first_marker(b) + p](i, j) = R[i][j];
+          }
       }
     group_bodies();
     const unsigned int n = system.n_marker_values();
@@ -143,15 +150,16 @@ namespace ACF
     for (unsigned int b = 0; b < factors.size(); ++b)
       {
         const auto &markers      = system.body_markers(b);
+        const Eigen::Matrix3d *R = rotations.data() + system.first_marker(b);
         const unsigned int first = dim * system.first_marker(b);
         for (unsigned int q = 0; q < markers.size(); ++q)
           for (unsigned int p = 0; p < markers.size(); ++p)
             {
               const Eigen::Matrix<Number, dim, dim> C =
-                rotations[b] *
+                R[p] *
                 factors[b]->compliance().template block<dim, dim>(
                   dim * markers[p], dim * markers[q]) *
-                rotations[b].transpose() / scales[b];
+                R[q].transpose() / scales[b];
               compliance = std::max(compliance, C.cwiseAbs().maxCoeff());
               for (unsigned int j = 0; j < dim; ++j)
                 {
@@ -288,7 +296,8 @@ namespace ACF
     const auto &markers = system.body_markers(b);
     for (unsigned int p = 0; p < markers.size(); ++p)
       s.template segment<dim>(dim * p) =
-        rotations[b] * factors[b]->functional_value(markers[p], w);
+        rotations[system.first_marker(b) + p] *
+        factors[b]->functional_value(markers[p], w);
   }
 
 
@@ -313,10 +322,12 @@ namespace ACF
           {
             Vector F = Vector::Zero(factors[b]->compliance().rows());
             for (unsigned int p = 0; p < markers.size(); ++p)
-              F.template segment<dim>(dim * markers[p]) =
-                rotations[b].transpose() *
-                phi.template segment<dim>(dim * (system.first_marker(b) + p)) /
-                scales[b];
+              {
+                const unsigned int marker = system.first_marker(b) + p;
+                F.template segment<dim>(dim * markers[p]) =
+                  rotations[marker].transpose() *
+                  phi.template segment<dim>(dim * marker) / scales[b];
+              }
             factors[b]->subtract_columns(F, body(b));
           }
         if (!changes.empty() && changes[b].columns.cols() > 0)

@@ -43,18 +43,14 @@ namespace ACF
                           const StageRotations &rotations,
                           Number *result)
     {
-      std::fill(result, result + stages[0][body].size(), Number());
+      const unsigned int n = stages[0][body].size();
+      NodalVector local(n);
+      std::fill(result, result + n, Number());
       for (unsigned int i = 0; i < factors.size(); ++i)
         {
-          const Matrix3 R_transposed = transpose(rotations.stages[i][body]);
-          const NodalVector &r       = stages[i][body];
-          for (unsigned int k = 0; k < r.size(); k += dim)
-            {
-              const Vector3 value =
-                R_transposed * Vector3({r[k], r[k + 1], r[k + 2]});
-              for (unsigned int c = 0; c < dim; ++c)
-                result[k + c] += factors[i] * value[c];
-            }
+          rotations.stages[i][body].to_body(stages[i][body], n / dim, local);
+          for (unsigned int k = 0; k < n; ++k)
+            result[k] += factors[i] * local[k];
         }
     }
 
@@ -65,17 +61,14 @@ namespace ACF
     void
     add_in_world_frame(const Number *w,
                        const Number factor,
-                       const Matrix3 &rotation,
+                       const NodeRotations &rotations,
                        NodalVector &z)
     {
-      for (unsigned int a = 0; a < z.size() / dim; ++a)
-        {
-          Vector3 value;
-          for (unsigned int c = 0; c < dim; ++c)
-            value[c] = std::real(factor * w[dim * a + c]);
-          for (unsigned int c = 0; c < dim; ++c)
-            z[dim * a + c] += rotation[c] * value;
-        }
+      NodalVector real(z.size());
+      for (unsigned int k = 0; k < z.size(); ++k)
+        real[k] = std::real(factor * w[k]);
+      rotations.to_world(real, z.size() / dim, real);
+      z += real;
     }
 
 
@@ -89,8 +82,9 @@ namespace ACF
                    const MultibodySystem &system,
                    const Number rate,
                    const Number squared_rate,
-                   const std::vector<Matrix3> &rotations,
+                   const std::vector<NodeRotations> &rotations,
                    const MarkerLinearization &linearization,
+                   const std::vector<LowRankChange> &changes,
                    FactorizationCache &cache,
                    Statistics &statistics)
     {
@@ -110,7 +104,8 @@ namespace ACF
       coupled_system->prepare(matrices,
                               rotations,
                               linearization,
-                              {squared_rate, rate, Number(1)});
+                              {squared_rate, rate, Number(1)},
+                              changes);
     }
   } // namespace
 
@@ -134,7 +129,8 @@ namespace ACF
   void
   DiagonalizedStageSolver::prepare(const double step_size,
                                    const StageRotations &new_rotations,
-                                   const MarkerLinearization &linearization)
+                                   const MarkerLinearization &linearization,
+                                   const std::vector<LowRankChange> &changes)
   {
     rotations = new_rotations;
     for (unsigned int k = 0; k < diagonalization.components.size(); ++k)
@@ -152,6 +148,7 @@ namespace ACF
                          squared_rate.real(),
                          rotations.mean,
                          linearization,
+                         changes,
                          cache,
                          statistics);
         else
@@ -161,6 +158,7 @@ namespace ACF
                          squared_rate,
                          rotations.mean,
                          linearization,
+                         changes,
                          cache,
                          statistics);
       }
@@ -291,7 +289,8 @@ namespace ACF
   void
   OneStepStageSolver::prepare(const double step_size,
                               const StageRotations &new_rotations,
-                              const MarkerLinearization &linearization)
+                              const MarkerLinearization &linearization,
+                              const std::vector<LowRankChange> &changes)
   {
     rotations            = new_rotations;
     const unsigned int n = system.n_marker_values();
@@ -308,6 +307,7 @@ namespace ACF
                        squared_rate,
                        rotations.mean,
                        linearization,
+                       changes,
                        cache,
                        statistics);
       }
@@ -324,11 +324,14 @@ namespace ACF
       for (unsigned int b = 0; b < w.size(); ++b)
         for (unsigned int p = 0; p < system.body_markers(b).size(); ++p)
           {
+            const NodalFunctional &functional =
+              system.bodies()[b]
+                .reference()
+                .functionals()[system.body_markers(b)[p]];
+            const Matrix3 &R     = rotations.mean[b][functional.nodes[0]];
             const unsigned int k = dim * (system.first_marker(b) + p);
             const Vector3 value({F(k), F(k + 1), F(k + 2)});
-            const Vector3 rotated = to_world
-                                      ? rotations.mean[b] * value
-                                      : transpose(rotations.mean[b]) * value;
+            const Vector3 rotated = to_world ? R * value : value * R;
             for (unsigned int i = 0; i < dim; ++i)
               F(k + i) = rotated[i];
           }

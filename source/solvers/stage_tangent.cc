@@ -212,20 +212,12 @@ namespace ACF
         bodies[stage][body]->vmult(y, z);
         return;
       }
-    const Matrix3 &R   = rotations.stages[stage][body];
-    const auto &matrix = system.bodies()[body].operators().stiffness_matrix;
-    NodalVector local(z);
-    const auto rotate = [](const Matrix3 &Q, NodalVector &x) {
-      for (unsigned int k = 0; k < x.size(); k += dim)
-        {
-          const Vector3 value = Q * Vector3({x[k], x[k + 1], x[k + 2]});
-          for (unsigned int i = 0; i < dim; ++i)
-            x[k + i] = value[i];
-        }
-    };
-    rotate(transpose(R), local);
-    matrix.vmult(y, local);
-    rotate(R, y);
+    const NodeRotations &frames = rotations.stages[stage][body];
+    const unsigned int n        = z.size() / dim;
+    NodalVector local(z.size());
+    frames.to_body(z, n, local);
+    system.bodies()[body].operators().stiffness_matrix.vmult(y, local);
+    frames.to_world(y, n, y);
   }
 
 

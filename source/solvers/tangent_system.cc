@@ -8,27 +8,6 @@
 
 namespace ACF
 {
-  namespace
-  {
-    // y_a = R x_a of all nodes
-    template <typename Source, typename Target>
-    void
-    rotate(const Matrix3 &R, const Source &x, const std::size_t n, Target &&y)
-    {
-      for (std::size_t a = 0; a < n / dim; ++a)
-        {
-          Vector3 x_a;
-          for (unsigned int i = 0; i < dim; ++i)
-            x_a[i] = x[dim * a + i];
-          const Vector3 y_a = R * x_a;
-          for (unsigned int i = 0; i < dim; ++i)
-            y[dim * a + i] = y_a[i];
-        }
-    }
-  } // namespace
-
-
-
   TangentSystem::TangentSystem(const MultibodySystem &system,
                                Statistics &statistics)
     : system(system)
@@ -112,14 +91,14 @@ namespace ACF
           std::make_unique<CoupledSystem<double>>(system, *cache, statistics);
         factor_shift = shift;
       }
-    std::vector<Matrix3> rotations;
+    std::vector<NodeRotations> rotations;
     std::vector<LowRankChange> changes;
     for (unsigned int b = 0; b < tangents.size(); ++b)
       {
         const ReducedStrainTangent &reduced = tangents[b].reduced_tangent();
         rotations.push_back(tangents[b].rotation());
         changes.push_back({reduced.columns, reduced.coefficients});
-        if (auto matrix = tangents[b].matrix())
+        if (auto matrix = tangents[b].matrix(rotations[b]))
           cache->replace_stiffness(system.bodies()[b], std::move(matrix));
       }
     coupled_system->prepare(
@@ -136,17 +115,17 @@ namespace ACF
   TangentSystem::solve(SystemVector &r, Eigen::VectorXd &g)
   {
     for (unsigned int b = 0; b < r.size(); ++b)
-      rotate(transpose(tangents[b].rotation()),
-             r[b],
-             r[b].size(),
-             coupled_system->body(b));
+      NodeRotations(tangents[b].rotation())
+        .to_body(r[b],
+                 system.bodies()[b].operators().n_nodes,
+                 coupled_system->body(b));
     g = coupled_system->solve(g);
     statistics.real_solves += r.size();
     for (unsigned int b = 0; b < r.size(); ++b)
-      rotate(tangents[b].rotation(),
-             coupled_system->body(b),
-             r[b].size(),
-             r[b]);
+      NodeRotations(tangents[b].rotation())
+        .to_world(coupled_system->body(b),
+                  system.bodies()[b].operators().n_nodes,
+                  r[b]);
   }
 
 

@@ -22,6 +22,16 @@ namespace ACF
     increments.assign(tableau.n_stages(), zero);
     multipliers.assign(tableau.n_stages(),
                        Eigen::VectorXd::Zero(system.n_constraints()));
+    marker_nodes.resize(system.bodies().size());
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      if (system.bodies()[b].strain_measure() == StrainMeasure::green_lagrange)
+        {
+          std::vector<const NodalFunctional *> functionals;
+          for (const unsigned int p : system.body_markers(b))
+            functionals.push_back(
+              &system.bodies()[b].reference().functionals()[p]);
+          marker_nodes[b] = connected_nodes(functionals);
+        }
   }
 
 
@@ -186,36 +196,94 @@ namespace ACF
     result.stages.assign(n_stages, result.mean);
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
-        const Body &body     = system.bodies()[b];
-        const auto rotate_to = [&body](const Matrix3 &F, Matrix3 &rotation) {
-          const std::optional<BodyRotation> frame =
-            body_rotation(F, body.rotation_measure());
-          if (frame)
-            rotation = frame->rotation;
-          return frame.has_value();
+        const Body &body = system.bodies()[b];
+        const auto rotation_of =
+          [&body](const Matrix3 &F) -> std::optional<Matrix3> {
+          if (const auto frame = body_rotation(F, body.rotation_measure()))
+            return frame->rotation;
+          return {};
         };
-        Matrix3 start;
-        if (!rotate_to(mean_deformation_gradient(body.operators(),
-                                                 state->positions[b]),
-                       start))
+        const std::optional<Matrix3> at_start = rotation_of(
+          mean_deformation_gradient(body.operators(), state->positions[b]));
+        if (!at_start)
           throw SimulationError("Body '" + body.name() +
                                 "' is turned inside out at time " +
                                 format_number(state->time) +
                                 " s: its mean deformation gradient has a "
                                 "determinant that is not positive.");
-        result.mean[b] = start;
         Matrix3 mean;
         for (unsigned int i = 0; i < n_stages; ++i)
           {
-            result.stages[i][b] = start;
             const Matrix3 F =
               mean_deformation_gradient(body.operators(), position(i, b));
-            rotate_to(F, result.stages[i][b]);
+            result.stages[i][b] = rotation_of(F).value_or(*at_start);
             mean += F / n_stages;
           }
-        rotate_to(mean, result.mean[b]);
+        result.mean[b] = rotation_of(mean).value_or(*at_start);
+        if (body.strain_measure() == StrainMeasure::green_lagrange)
+          add_material_rotations(b, result);
       }
     return result;
+  }
+
+
+
+  void
+  StageEquations::add_material_rotations(const unsigned int b,
+                                         StageRotations &rotations) const
+  {
+    const auto &reference      = system.bodies()[b].reference();
+    const unsigned int n       = tableau.n_stages();
+    const unsigned int n_nodes = reference.operators().n_nodes;
+    std::vector<Matrix3> mean(n_nodes);
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        const std::vector<Matrix3> gradients =
+          reference.green_lagrange().node_gradients(position(i, b));
+        NodeRotations &stage = rotations.stages[i][b];
+        stage = material_rotations(gradients, marker_nodes[b], stage[0]);
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          mean[a] += gradients[a] / n;
+      }
+    rotations.mean[b] =
+      material_rotations(mean, marker_nodes[b], rotations.mean[b][0]);
+  }
+
+
+
+  std::vector<LowRankChange>
+  StageEquations::reduced_strain_changes(
+    const std::vector<bool> &corrected) const
+  {
+    const unsigned int n = tableau.n_stages();
+    std::vector<LowRankChange> changes(corrected.size());
+    for (unsigned int b = 0; b < corrected.size(); ++b)
+      {
+        const Body &body               = system.bodies()[b];
+        const BodyOperators &operators = body.operators();
+        changes[b].columns.resize(operators.n_unknowns(), 0);
+        if (!corrected[b] || body.strain_measure() != StrainMeasure::reduced)
+          continue;
+        NodalVector mean(operators.n_unknowns()), local(mean);
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            const NodalVector x = position(i, b);
+            const auto frame =
+              body_rotation(mean_deformation_gradient(operators, x),
+                            body.rotation_measure());
+            if (!frame)
+              return {};
+            NodeRotations(frame->rotation).to_body(x, operators.n_nodes, local);
+            mean.add(1. / n, local);
+          }
+        auto tangent =
+          reduced_strain_tangent(operators, body.rotation_measure(), mean);
+        if (!tangent)
+          return {};
+        changes[b] = {std::move(tangent->columns),
+                      std::move(tangent->coefficients)};
+      }
+    return changes;
   }
 
 

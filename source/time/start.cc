@@ -133,7 +133,7 @@ namespace ACF
               const Eigen::VectorXd &g,
               SystemVector &x)
       {
-        std::vector<Matrix3> rotations;
+        std::vector<NodeRotations> rotations;
         std::vector<BodyMatrix<double>> matrices;
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
           {
@@ -166,7 +166,7 @@ namespace ACF
               Vector3 w;
               for (unsigned int i = 0; i < dim; ++i)
                 w[i] = coupled_system.body(b)[dim * a + i];
-              w       = rotations[b] * w;
+              w       = rotations[b][a] * w;
               largest = std::max(largest, w.norm());
               for (unsigned int i = 0; i < dim; ++i)
                 x[b][dim * a + i] += w[i];

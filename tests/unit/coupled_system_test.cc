@@ -117,6 +117,70 @@ TEST(CoupledSystem, EverythingAgainstTheDenseSystem)
     }
 }
 
+TEST(CoupledSystem, NodeFramesAndChangesOfLowRank)
+{
+  Random random;
+  const MultibodySystem system(coupled_parameters(), ".");
+  for (const bool with_changes : {false, true})
+    {
+      std::vector<LowRankChange> changes;
+      if (with_changes)
+        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+          {
+            // as large as the stiffness; the second body has none
+            const BodyOperators &body = system.bodies()[b].operators();
+            const unsigned int rank   = (b == 1 ? 0 : 4);
+            const double size         = to_dense(body.stiffness_matrix).norm();
+            LowRankChange change;
+            change.columns.resize(body.n_unknowns(), rank);
+            for (unsigned int j = 0; j < rank; ++j)
+              for (unsigned int k = 0; k < body.n_unknowns(); ++k)
+                change.columns(k, j) = random.number(j + 1);
+            change.coefficients = Eigen::MatrixXd::Identity(rank, rank) *
+                                  (size / body.n_unknowns());
+            if (rank > 0)
+              change.coefficients(0, 0) *= -1;
+            changes.push_back(change);
+          }
+      for (unsigned int s = 1; s <= 3; ++s)
+        {
+          double error = 0;
+          for (const double tau : {1e-4, 1e-2})
+            {
+              Statistics statistics;
+              FactorizationCache cache(statistics);
+              DiagonalizedStageSolver solver(system,
+                                             radau_iia(s),
+                                             cache,
+                                             statistics);
+              const auto rotations = random_node_rotations(system, random, s);
+              const auto linearization = random_linearization(system, random);
+              const DenseStageSystem dense(
+                system, radau_iia(s), tau, rotations, linearization, changes);
+              Eigen::VectorXd r = dense.random_right_hand_side(random);
+              Stages stages     = dense.unflatten(r);
+              solver.prepare(tau, rotations, linearization, changes);
+              solver.solve(stages.bodies, stages.constraints);
+              error =
+                std::max(error,
+                         dense.error(dense.flatten(stages), dense.solve(r)));
+
+              r.head(dense.displacements(r).size()).setZero();
+              stages = dense.unflatten(r);
+              solver.solve_constraints(stages.bodies, stages.constraints);
+              error =
+                std::max(error,
+                         dense.error(dense.flatten(stages), dense.solve(r)));
+            }
+          EXPECT_LT(error, 1e-8) << with_changes << s;
+          report(std::to_string(s) + " stages, frames of nodes" +
+                   (with_changes ? ", changes of low rank" : "") +
+                   " against dense",
+                 error);
+        }
+    }
+}
+
 TEST(CoupledSystem, OneStepMatricesConverge)
 {
   // Springs contract like bodies, however stiff. Dampers are approximated

@@ -71,6 +71,32 @@ namespace ACF::Testing
     return rotations;
   }
 
+  /** The same in all stages, but for each node that is not one of a marker. */
+  inline StageRotations
+  random_node_rotations(const MultibodySystem &system,
+                        Random &random,
+                        const unsigned int n_stages)
+  {
+    StageRotations rotations;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        std::vector<Matrix3> nodes;
+        for (unsigned int a = 0; a < system.bodies()[b].operators().n_nodes;
+             ++a)
+          nodes.push_back(random.rotation());
+        std::vector<const NodalFunctional *> functionals;
+        for (const unsigned int p : system.body_markers(b))
+          functionals.push_back(
+            &system.bodies()[b].reference().functionals()[p]);
+        for (const auto &set : connected_nodes(functionals))
+          for (const unsigned int a : set)
+            nodes[a] = nodes[set[0]];
+        rotations.mean.push_back(NodeRotations(nodes));
+      }
+    rotations.stages.assign(n_stages, rotations.mean);
+    return rotations;
+  }
+
   /** Right-hand sides or solutions of all stages in one. */
   struct Stages
   {
@@ -83,7 +109,9 @@ namespace ACF::Testing
    * \f[ \tau^{-2} A^{-2} \otimes M + \tau^{-1} A^{-1} \otimes C
    *     + I \otimes K \f]
    * bordered by $I \otimes B$, with everything of bodies and markers in M, C
-   * and K, and with the C and K of bodies turned to each stage.
+   * and K, and with the C and K of bodies turned to each stage, node by node. M
+   * is turned by the mean rotations, which matters only if those differ between
+   * the nodes of a body.
    */
   class DenseStageSystem
   {
@@ -92,7 +120,8 @@ namespace ACF::Testing
                      const ButcherTableau &tableau,
                      const double step_size,
                      const StageRotations &rotations,
-                     const MarkerLinearization &linearization)
+                     const MarkerLinearization &linearization,
+                     const std::vector<LowRankChange> &changes = {})
       : system(system)
       , n_stages(tableau.n_stages())
       , n_constraints(system.n_constraints())
@@ -105,7 +134,7 @@ namespace ACF::Testing
       matrix = Eigen::MatrixXd::Zero(size(), size());
       for (unsigned int i = 0; i < n_stages; ++i)
         {
-          assemble_bodies(rotations.stages[i]);
+          assemble_bodies(rotations.stages[i], rotations.mean, changes);
           assemble_markers(linearization);
           for (unsigned int j = 0; j < n_stages; ++j)
             matrix.block(i * n_unknowns,
@@ -233,7 +262,9 @@ namespace ACF::Testing
     }
 
     void
-    assemble_bodies(const std::vector<Matrix3> &rotations)
+    assemble_bodies(const std::vector<NodeRotations> &rotations,
+                    const std::vector<NodeRotations> &mean,
+                    const std::vector<LowRankChange> &changes)
     {
       M = C = K          = Eigen::MatrixXd::Zero(n_unknowns, n_unknowns);
       unsigned int first = 0;
@@ -243,15 +274,26 @@ namespace ACF::Testing
           const BodyOperators &operators = body.operators();
           const unsigned int n           = operators.n_unknowns();
           Eigen::MatrixXd R              = Eigen::MatrixXd::Zero(n, n);
+          Eigen::MatrixXd R_mean         = R;
           for (unsigned int a = 0; a < operators.n_nodes; ++a)
-            R.block<dim, dim>(dim * a, dim * a) = to_eigen(rotations[b]);
-          const Eigen::MatrixXd mass = to_dense(operators.mass_matrix);
+            {
+              R.block<dim, dim>(dim * a, dim * a) = to_eigen(rotations[b][a]);
+              R_mean.block<dim, dim>(dim * a, dim * a) = to_eigen(mean[b][a]);
+            }
+          const Eigen::MatrixXd mass =
+            R_mean * to_dense(operators.mass_matrix) * R_mean.transpose();
           const Eigen::MatrixXd stiffness =
             R * to_dense(operators.stiffness_matrix) * R.transpose();
           M.block(first, first, n, n) = mass;
           K.block(first, first, n, n) = stiffness;
           C.block(first, first, n, n) =
             body.mass_damping() * mass + body.stiffness_damping() * stiffness;
+          if (!changes.empty())
+            {
+              const Eigen::MatrixXd U = R * changes[b].columns;
+              K.block(first, first, n, n) +=
+                U * changes[b].coefficients * U.transpose();
+            }
           first += n;
         }
     }

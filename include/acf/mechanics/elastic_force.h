@@ -5,6 +5,7 @@
 #define acf_mechanics_elastic_force_h
 
 #include <acf/mechanics/body.h>
+#include <acf/mechanics/node_rotations.h>
 #include <acf/mechanics/reduced_strain_tangent.h>
 
 #include <memory>
@@ -72,9 +73,9 @@ namespace ACF
     void
     vmult(NodalVector &y, const NodalVector &x) const;
 
-    /** $R^T K R$ of the strain of Green and Lagrange; else nothing. */
+    /** $R_a^T K_{ab} R_b$ of the strain of Green and Lagrange; else nothing. */
     std::unique_ptr<const BlockNodeMatrix>
-    matrix() const;
+    matrix(const NodeRotations &frames) const;
 
   private:
     const Body *body = nullptr;

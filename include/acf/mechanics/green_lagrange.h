@@ -5,6 +5,7 @@
 #define acf_mechanics_green_lagrange_h
 
 #include <acf/mechanics/body_operators.h>
+#include <acf/mechanics/node_rotations.h>
 
 #include <deal.II/base/aligned_vector.h>
 #include <deal.II/base/thread_local_storage.h>
@@ -57,12 +58,19 @@ namespace ACF
                   NodalVector &result) const;
 
     /**
-     * K in a frame of the body: adds $R^T K_{ab} R$ for all couples of nodes.
+     * K in frames of the nodes: adds $R_a^T K_{ab} R_b$ for all couples.
      */
     void
     add_tangent(const NodalVector &positions,
-                const Matrix3 &rotation,
+                const NodeRotations &rotations,
                 BlockNodeMatrix &matrix) const;
+
+    /**
+     * Deformation gradients at the nodes, for each the mean of F in the cells
+     * around.
+     */
+    std::vector<Matrix3>
+    node_gradients(const NodalVector &positions) const;
 
     std::size_t
     memory_consumption() const;

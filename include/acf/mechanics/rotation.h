@@ -82,6 +82,16 @@ namespace ACF
                 const RotationMeasure measure);
 
   /**
+   * R of the polar decomposition alone, by Newton's iteration
+   * $R \leftarrow (R + R^{-T}) / 2$ from F (Higham, Computing the polar
+   * decomposition - with applications, 1986): quick for small strain.
+   *
+   * @return nothing if $\det F \le 0$ (or not finite)
+   */
+  std::optional<Matrix3>
+  nearest_rotation(const Matrix3 &deformation_gradient);
+
+  /**
    * Rotation by the angle $|v|$ about the axis $v/|v|$:
    * $R = \exp([v]_\times)$ (Rodrigues).
    *

@@ -5,6 +5,7 @@
 #define acf_solvers_coupled_system_h
 
 #include <acf/mechanics/multibody_system.h>
+#include <acf/mechanics/node_rotations.h>
 #include <acf/solvers/factorization_cache.h>
 
 #include <Eigen/SparseLU>
@@ -47,9 +48,10 @@ namespace ACF
 
   /**
    * Solves the equations of all bodies coupled by joints, force elements and
-   * lumped masses, in the bodies' frames,
+   * lumped masses, in frames of the bodies' nodes,
    * \f[ K_b w_b + S_b^T R_b^T \phi_b = r_b, \qquad \phi = H s + D^T \mu, \qquad
-   *     D s = g, \qquad s_b = R_b S_b w_b. \f]
+   *     D s = g, \qquad s_b = R_b S_b w_b, \f]
+   * where $R_b$ has a block for each marker: all nodes of a marker turn alike.
    * With $w = K^{-1} r - Y R^T \phi$ and the compliances $C = S Y$ only a small
    * sparse system in the marker values s and the multipliers remains,
    * \f[ s + R C R^T (H s + D^T \mu) = R S K^{-1} r, \qquad
@@ -77,14 +79,14 @@ namespace ACF
     /**
      * Factorises what the cache does not have, and the system of the markers.
      * @param matrices of each body
-     * @param rotations $R_b$ of each body
+     * @param rotations of each body; one for the nodes of a marker
      * @param changes of each body's matrix, or nothing; takes one solve per
      * column
      * @throws SimulationError if the system of the markers is singular
      */
     void
     prepare(const std::vector<BodyMatrix<Number>> &matrices,
-            const std::vector<Matrix3> &rotations,
+            const std::vector<NodeRotations> &rotations,
             const MarkerLinearization &linearization,
             const MarkerCoefficients<Number> &coefficients,
             const std::vector<LowRankChange> &changes = {});
@@ -173,6 +175,8 @@ namespace ACF
 
     std::vector<JointedFactorization<Number> *> factors;
     std::vector<Number> scales;
+
+    /** Per marker of the system. */
     std::vector<Eigen::Matrix3d> rotations;
 
     /** Right-hand sides, those with the same factor one after the other. */

@@ -17,14 +17,17 @@ namespace ACF
   /** Constraint rows for each stage. */
   using StageConstraints = std::vector<Eigen::VectorXd>;
 
-  /** Rotations of the bodies in a step. */
+  /**
+   * Rotations of the bodies, or of their material at the nodes, in a step. The
+   * nodes of a marker turn alike.
+   */
   struct StageRotations
   {
     /** [stage][body]. */
-    std::vector<std::vector<Matrix3>> stages;
+    std::vector<std::vector<NodeRotations>> stages;
 
     /** Between those of the stages, [body]. */
-    std::vector<Matrix3> mean;
+    std::vector<NodeRotations> mean;
   };
 
   /**
@@ -34,16 +37,19 @@ namespace ACF
    *      + I \otimes K) \Delta Z + (I \otimes B^T) \Delta\Lambda = r, \qquad
    *     (I \otimes B) \Delta Z = g, \f]
    * or an approximation of it, with factorisations that depend on the step size
-   * only. K is the stiffness R A R^T of the bodies and that of the markers, C
-   * the Rayleigh damping and that of the markers, M includes lumped masses.
+   * only. K is the stiffness R A R^T of the bodies, with changes of low rank
+   * R (A + U B U^T) R^T where they are given, and that of the markers, C the
+   * Rayleigh damping and that of the markers, M includes lumped masses.
    *
    * One factorisation serves bodies that turn in the step because
    * $\Delta Z_i = R_i w_i$ is solved for in frames that turn with them: with
    * the rotation R_i of stage i the stiffness of the body is exact, and what
    * the equations for w neglect, $R_i^T R_j - 1$, meets only the masses and the
    * markers. (With one rotation for all stages the error would meet the
-   * stiffness, whose higher modes then decide the contraction.) Rotations and
-   * markers are frozen by prepare().
+   * stiffness, whose higher modes then decide the contraction.) For the strain
+   * of Green and Lagrange R_i may turn each node with its material; then R A
+   * R^T is no more than close to the tangent. Rotations and markers are frozen
+   * by prepare().
    */
   class StageSolver
   {
@@ -53,11 +59,14 @@ namespace ACF
     /**
      * Chooses the step size and freezes the rotations of the bodies. Factorises
      * what the cache does not have.
+     * @param changes of A of each body, or nothing; take one solve per column
+     * and factor
      */
     virtual void
     prepare(const double step_size,
             const StageRotations &rotations,
-            const MarkerLinearization &linearization) = 0;
+            const MarkerLinearization &linearization,
+            const std::vector<LowRankChange> &changes = {}) = 0;
 
     /**
      * @param[in,out] stages r, replaced by $\Delta Z$, in the world frame
@@ -94,7 +103,8 @@ namespace ACF
     void
     prepare(const double step_size,
             const StageRotations &rotations,
-            const MarkerLinearization &linearization) override;
+            const MarkerLinearization &linearization,
+            const std::vector<LowRankChange> &changes = {}) override;
 
     void
     solve(StageVector &stages, StageConstraints &constraints) override;
@@ -139,7 +149,8 @@ namespace ACF
    * $\Delta Z = \tau^2 L D\, \Delta Y$
    * \f[ (M + \tau^2 D_i K) \Delta Y_i + B^T \Delta\Lambda_i = r_i -
    *     \tau^2 K \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
-   * Damping enters each stage with the rate $1 / (\tau \sqrt{D_i})$ alone.
+   * Damping enters each stage with the rate $1 / (\tau \sqrt{D_i})$ alone, and
+   * K on the right is without changes of low rank.
    */
   class OneStepStageSolver : public StageSolver
   {
@@ -152,7 +163,8 @@ namespace ACF
     void
     prepare(const double step_size,
             const StageRotations &rotations,
-            const MarkerLinearization &linearization) override;
+            const MarkerLinearization &linearization,
+            const std::vector<LowRankChange> &changes = {}) override;
 
     void
     solve(StageVector &stages, StageConstraints &constraints) override;

@@ -63,12 +63,22 @@ namespace ACF
     constraint_residual() const;
 
     /**
-     * Rotations of the bodies in the stages; those of the start of the step
+     * Rotations of the bodies in the stages, for the strain of Green and
+     * Lagrange of the material at each node; those of the start of the step
      * where a stage has none.
      * @throws SimulationError if the state at the start is turned inside out
      */
     StageRotations
     rotations() const;
+
+    /**
+     * U and B of the reduced strain at the mean of the stages in the frame of
+     * the body, see ReducedStrainTangent.
+     * @param corrected the bodies that get them; others and those with the
+     * strain of Green and Lagrange have columns of rank 0
+     */
+    std::vector<LowRankChange>
+    reduced_strain_changes(const std::vector<bool> &corrected) const;
 
     /** Linearisation of the markers at the mean of the stages. */
     MarkerLinearization
@@ -100,6 +110,10 @@ namespace ACF
                   const NodalVector &acceleration,
                   NodalVector &residual) const;
 
+    void
+    add_material_rotations(const unsigned int body,
+                           StageRotations &rotations) const;
+
     SystemVector
     positions(const unsigned int stage) const;
 
@@ -111,6 +125,9 @@ namespace ACF
     Statistics &statistics;
     const Eigen::MatrixXd A_inverse;
     const Eigen::MatrixXd A_inverse_squared;
+
+    /** Nodes of markers, for bodies with the strain of Green and Lagrange. */
+    std::vector<NodeSets> marker_nodes;
 
     const SystemState *state = nullptr;
     double tau               = 0;
