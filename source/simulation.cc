@@ -209,34 +209,35 @@ namespace ACF
                   const bool finished)
   {
     nlohmann::ordered_json json;
-    json["version"]                = ACF_VERSION;
-    json["finished"]               = finished;
-    json["steps"]                  = statistics.steps;
-    json["rejected steps"]         = statistics.rejected_steps;
-    json["halvings"]               = statistics.halvings;
-    json["exact tangent steps"]    = statistics.exact_tangent_steps;
-    json["krylov iterations"]      = statistics.krylov_iterations;
-    json["factor refreshes"]       = statistics.factor_refreshes;
-    json["newton iterations"]      = statistics.newton_iterations;
-    json["newton iterations max"]  = statistics.max_newton_iterations;
-    json["equilibrium iterations"] = statistics.equilibrium_iterations;
-    json["factorisations"]         = {{"real", statistics.real_factorizations},
-                                      {"complex", statistics.complex_factorizations}};
-    json["solves"]                 = {{"real", statistics.real_solves},
-                                      {"complex", statistics.complex_solves},
-                                      {"setup", statistics.setup_solves}};
-    json["force evaluations"]      = statistics.force_evaluations;
-    json["marker factorisations"]  = statistics.marker_factorizations;
-    json["constraint corrections"] = statistics.constraint_corrections;
-    json["stress evaluations"]     = statistics.stress_evaluations;
-    json["validity checks"]        = statistics.validity_checks;
-    json["vtu files"]              = statistics.vtu_files;
-    json["probe rows"]             = statistics.probe_rows;
-    json["constraints"]            = system.n_constraints();
-    json["repeated constraints"]   = system.n_repeated_constraints();
-    json["constraint residual"]    = {
-         {"positions [m or rad]", statistics.constraint_residual},
-         {"velocities [m/s or rad/s]", statistics.constraint_velocity_residual}};
+    json["version"]                 = ACF_VERSION;
+    json["finished"]                = finished;
+    json["steps"]                   = statistics.steps;
+    json["rejected steps"]          = statistics.rejected_steps;
+    json["halvings"]                = statistics.halvings;
+    json["corrected tangent steps"] = statistics.corrected_tangent_steps;
+    json["exact tangent steps"]     = statistics.exact_tangent_steps;
+    json["krylov iterations"]       = statistics.krylov_iterations;
+    json["factor refreshes"]        = statistics.factor_refreshes;
+    json["newton iterations"]       = statistics.newton_iterations;
+    json["newton iterations max"]   = statistics.max_newton_iterations;
+    json["equilibrium iterations"]  = statistics.equilibrium_iterations;
+    json["factorisations"]          = {{"real", statistics.real_factorizations},
+                                       {"complex", statistics.complex_factorizations}};
+    json["solves"]                  = {{"real", statistics.real_solves},
+                                       {"complex", statistics.complex_solves},
+                                       {"setup", statistics.setup_solves}};
+    json["force evaluations"]       = statistics.force_evaluations;
+    json["marker factorisations"]   = statistics.marker_factorizations;
+    json["constraint corrections"]  = statistics.constraint_corrections;
+    json["stress evaluations"]      = statistics.stress_evaluations;
+    json["validity checks"]         = statistics.validity_checks;
+    json["vtu files"]               = statistics.vtu_files;
+    json["probe rows"]              = statistics.probe_rows;
+    json["constraints"]             = system.n_constraints();
+    json["repeated constraints"]    = system.n_repeated_constraints();
+    json["constraint residual"]     = {
+          {"positions [m or rad]", statistics.constraint_residual},
+          {"velocities [m/s or rad/s]", statistics.constraint_velocity_residual}};
     json["different bodies"] = system.n_reference_bodies();
     for (const Body &body : system.bodies())
       json["bodies"][body.name()] = {

@@ -44,6 +44,12 @@ namespace ACF
                       "Iterations after which a step is given up and halved. "
                       "Units: none.",
                       Patterns::Integer(2, 1000));
+    prm.add_parameter("Maximal Krylov iterations",
+                      max_krylov_iterations,
+                      "Iterations of a linear system with the exact tangent, "
+                      "which takes over where the iteration of a step fails, "
+                      "after which the step is given up. Units: none.",
+                      Patterns::Integer(1, 1000));
     prm.add_parameter("Maximal halvings",
                       max_halvings,
                       "How often a step that does not converge is halved "
@@ -96,7 +102,8 @@ namespace ACF
     , A_inverse(tableau.A.inverse())
     , cache(statistics)
     , equations(system, tableau, statistics)
-    , exact(system.bodies().size())
+    , acceleration(system, 5)
+    , marked(system.bodies().size())
   {
     if (parameters.one_step_matrices)
       stage_solver = std::make_unique<OneStepStageSolver>(system,
@@ -140,13 +147,26 @@ namespace ACF
 
 
 
-  void
-  RadauStepper::prepare()
+  bool
+  RadauStepper::prepare(StepReport &report)
   {
     rotations = equations.rotations();
-    stage_solver->prepare(equations.step_size(),
-                          rotations,
-                          equations.mean_linearization());
+    std::vector<LowRankChange> changes;
+    if (linearization != Linearization::simplified)
+      changes = equations.reduced_strain_changes(marked);
+    try
+      {
+        stage_solver->prepare(equations.step_size(),
+                              rotations,
+                              equations.mean_linearization(),
+                              changes);
+        return true;
+      }
+    catch (const SimulationError &error)
+      {
+        report.failure = error.what();
+        return false;
+      }
   }
 
 
@@ -217,13 +237,14 @@ namespace ACF
   void
   RadauStepper::iterate(const LinearSolver &solve,
                         const unsigned int patience,
+                        const bool accelerate,
                         StepReport &report)
   {
+    acceleration.reset();
     StageVector increment(equations.increments);
     StageConstraints constraint_increment(equations.multipliers);
-    double factor             = std::pow(convergence_factor, 0.8);
-    double previous_norm      = 0;
-    double previous_ratio     = 0;
+    double factor        = std::pow(convergence_factor, 0.8);
+    double previous_norm = 0, previous_ratio = 0;
     unsigned int n_iterations = 0;
     report.failure.clear();
     while (n_iterations < parameters.max_newton_iterations)
@@ -232,16 +253,15 @@ namespace ACF
                                 constraint_increment,
                                 report.failure) ||
             !solve(increment, constraint_increment, report.failure))
-          return;
+          {
+            // the prediction may be at fault, or the iterations since
+            if (n_iterations > 0)
+              std::fill(marked.begin(), marked.end(), true);
+            return;
+          }
         ++n_iterations;
         ++report.iterations;
         ++statistics.newton_iterations;
-        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-          {
-            for (unsigned int b = 0; b < system.bodies().size(); ++b)
-              equations.increments[i][b] += increment[i][b];
-            equations.multipliers[i] += constraint_increment[i];
-          }
 
         const double norm = increment_norm(increment);
         if (!std::isfinite(norm))
@@ -249,6 +269,7 @@ namespace ACF
             report.failure =
               "the iteration produced numbers that are not "
               "finite";
+            std::fill(marked.begin(), marked.end(), true);
             return;
           }
         if (n_iterations > 1)
@@ -273,35 +294,44 @@ namespace ACF
                   report.failure = "the iteration contracts too slowly";
                 if (!report.failure.empty())
                   {
-                    choose_exact_bodies(increment);
+                    mark_bodies(increment);
                     return;
                   }
               }
           }
         previous_norm         = norm;
         report.error_estimate = factor * norm;
-        if (report.error_estimate <= parameters.newton_tolerance)
+        report.converged = report.error_estimate <= parameters.newton_tolerance;
+        // the contraction that was measured is that of accelerated iterations
+        if (accelerate && (!report.converged || !acceleration.empty()))
+          acceleration.accelerate(increment, constraint_increment);
+        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+          {
+            for (unsigned int b = 0; b < system.bodies().size(); ++b)
+              equations.increments[i][b] += increment[i][b];
+            equations.multipliers[i] += constraint_increment[i];
+          }
+        if (report.converged)
           {
             convergence_factor =
               std::max(factor, std::numeric_limits<double>::epsilon());
-            report.converged = true;
             return;
           }
       }
     report.failure = "the iteration did not reach its tolerance";
-    choose_exact_bodies(increment);
+    mark_bodies(increment);
   }
 
 
 
   void
-  RadauStepper::choose_exact_bodies(const StageVector &increment)
+  RadauStepper::mark_bodies(const StageVector &increment)
   {
     const double largest = increment_norm(increment);
-    for (unsigned int b = 0; b < exact.size(); ++b)
+    for (unsigned int b = 0; b < marked.size(); ++b)
       for (const SystemVector &stage : increment)
         if (increment_norm(stage, b) > 0.01 * largest)
-          exact[b] = true;
+          marked[b] = true;
   }
 
 
@@ -309,54 +339,123 @@ namespace ACF
   void
   RadauStepper::iterate_exactly(StepReport &report)
   {
-    constexpr unsigned int max_krylov_iterations = 40;
     if (!tangent)
       tangent = std::make_unique<StageTangent>(system, tableau);
-    double reduction = 0;
     const auto solve = [&](StageVector &r,
                            StageConstraints &g,
                            std::string &failure) {
-      if (!equations.linearize(exact, rotations, *tangent))
+      if (!equations.linearize(marked, rotations, *tangent))
         {
           failure = "a body is turned inside out";
           return false;
         }
       unsigned int n_iterations;
-      reduction = tangent->solve(
-        *stage_solver, 1e-3, max_krylov_iterations, r, g, n_iterations);
+      const double reduction = tangent->solve(*stage_solver,
+                                              1e-3,
+                                              parameters.max_krylov_iterations,
+                                              r,
+                                              g,
+                                              n_iterations);
       statistics.krylov_iterations += n_iterations;
       if (reduction < 0.3)
         return true;
       failure = "the linear systems with the exact tangent are not solved by " +
-                std::to_string(max_krylov_iterations) + " iterations";
+                std::to_string(parameters.max_krylov_iterations) +
+                " iterations";
       return false;
     };
-    iterate(solve, 2, report);
-    if (report.converged)
-      statistics.exact_tangent_steps +=
-        std::count(exact.begin(), exact.end(), true);
+    iterate(solve, 2, false, report);
+  }
+
+
+
+  void
+  RadauStepper::refresh_factors(StepReport &report)
+  {
+    std::vector<const Body *> refreshed;
+    for (unsigned int b = 0; b < marked.size(); ++b)
+      if (marked[b])
+        {
+          const Body &body = system.bodies()[b];
+          const auto elastic =
+            ElasticTangent::at(body, equations.position(0, b));
+          auto matrix =
+            elastic ? elastic->matrix(rotations.stages[0][b]) : nullptr;
+          if (!matrix)
+            continue;
+          cache.replace_stiffness(body, std::move(matrix));
+          refreshed.push_back(&body);
+        }
+    if (refreshed.empty() || prepare(report))
+      {
+        statistics.factor_refreshes += refreshed.size();
+        return;
+      }
+    for (const Body *const body : refreshed)
+      cache.restore_stiffness(*body);
+    prepare(report);
+  }
+
+
+
+  void
+  RadauStepper::try_linearization(const SystemState &state, StepReport &report)
+  {
+    predict(state);
+    if (!prepare(report))
+      return;
+    if (linearization == Linearization::exact)
+      {
+        if (n_failures >= 2)
+          refresh_factors(report);
+        iterate_exactly(report);
+        if (report.converged)
+          statistics.exact_tangent_steps +=
+            std::count(marked.begin(), marked.end(), true);
+        return;
+      }
+    // Acceleration takes some iterations to find the modes that are slow. The
+    // one-step matrices belong to a non-normal iteration, whose increments may
+    // grow at first.
+    iterate(
+      [&](StageVector &r, StageConstraints &g, std::string &) {
+        stage_solver->solve(r, g);
+        return true;
+      },
+      parameters.one_step_matrices ? 6 : 5,
+      !parameters.one_step_matrices,
+      report);
+    if (report.converged && linearization == Linearization::corrected)
+      for (unsigned int b = 0; b < marked.size(); ++b)
+        if (marked[b] &&
+            system.bodies()[b].strain_measure() == StrainMeasure::reduced)
+          ++statistics.corrected_tangent_steps;
   }
 
 
 
   bool
-  RadauStepper::refresh_factors()
+  RadauStepper::linearize_better()
   {
-    bool refreshed = false;
-    for (unsigned int b = 0; b < exact.size(); ++b)
-      if (exact[b])
-        {
-          const Body &body = system.bodies()[b];
-          const auto elastic =
-            ElasticTangent::at(body, equations.position(0, b));
-          auto matrix = elastic ? elastic->matrix() : nullptr;
-          if (!matrix)
-            continue;
-          cache.replace_stiffness(body, std::move(matrix));
-          ++statistics.factor_refreshes;
-          refreshed = true;
-        }
-    return refreshed;
+    if (linearization == Linearization::exact ||
+        std::find(marked.begin(), marked.end(), true) == marked.end())
+      return false;
+    bool reduced = false;
+    for (unsigned int b = 0; b < marked.size(); ++b)
+      reduced = reduced || (marked[b] && system.bodies()[b].strain_measure() ==
+                                           StrainMeasure::reduced);
+    if (linearization == Linearization::simplified)
+      {
+        waiting_steps = next_wait;
+        next_wait     = std::min(2 * next_wait, longest_wait);
+        if (reduced)
+          {
+            linearization = Linearization::corrected;
+            return true;
+          }
+      }
+    linearization = Linearization::exact;
+    return true;
   }
 
 
@@ -365,45 +464,26 @@ namespace ACF
   RadauStepper::try_step(const SystemState &state, const double step_size)
   {
     equations.start_step(state, step_size);
-    predict(state);
-    prepare();
-
+    if (waiting_steps == 0)
+      {
+        linearization = Linearization::simplified;
+        std::fill(marked.begin(), marked.end(), false);
+      }
     StepReport report;
-    if (exact_steps == 0)
-      {
-        // The one-step matrices belong to a non-normal iteration, whose
-        // increments may grow at first.
-        std::fill(exact.begin(), exact.end(), false);
-        iterate(
-          [&](StageVector &r, StageConstraints &g, std::string &) {
-            stage_solver->solve(r, g);
-            return true;
-          },
-          parameters.one_step_matrices ? 6 : 0,
-          report);
-        if (report.converged)
-          next_wait = first_wait;
-        else
-          {
-            predict(state);
-            exact_steps = next_wait;
-            next_wait   = std::min(2 * next_wait, longest_wait);
-          }
-      }
-    if (!report.converged &&
-        std::find(exact.begin(), exact.end(), true) != exact.end())
-      {
-        if (n_failures >= 2 && refresh_factors())
-          prepare();
-        iterate_exactly(report);
-      }
-    if (report.converged && system.n_constraints() > 0)
-      correct_constraints();
+    do
+      try_linearization(state, report);
+    while (!report.converged && linearize_better());
+
     if (!report.converged)
       {
         ++n_failures;
-        exact_steps = 0;
+        waiting_steps = 0;
+        return report;
       }
+    if (linearization == Linearization::simplified)
+      next_wait = first_wait;
+    if (system.n_constraints() > 0)
+      correct_constraints();
     return report;
   }
 
@@ -428,7 +508,7 @@ namespace ACF
     accepted_stages      = equations.increments;
     accepted_multipliers = equations.multipliers;
     n_failures           = 0;
-    exact_steps -= std::min(exact_steps, 1U);
+    waiting_steps -= std::min(waiting_steps, 1U);
 
     const unsigned int last = tableau.n_stages() - 1;
     state.time += accepted_step_size;

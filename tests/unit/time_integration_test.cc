@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 
 #include "recorded_run.h"
@@ -159,11 +160,13 @@ TEST(TimeIntegration, ConservationInFreeFlight)
   for (const unsigned int s : {2U, 3U})
     {
       std::vector<double> angular_errors, energy_errors;
-      // three stages reach the tolerance of the iteration, 1e-13 of the length
-      // per step, with the smallest step
-      for (const double refinement : {1, 2, 4})
+      // The largest slope counts: large steps do not show the order of the
+      // energy yet, and with the smallest ones of three stages the tolerance of
+      // the iteration, 1e-14 of the length per step, leaves 2e-12 of the
+      // angular momentum.
+      for (const double refinement : {1, 2, 4, 8})
         {
-          const double step_size = (s == 2 ? 0.01 : 0.02) / refinement;
+          const double step_size = (s == 2 ? 0.02 : 0.04) / refinement;
           RecordedRun run(flying_block(), 0.1, options(s, step_size, 0.5));
           run.run();
           EXPECT_EQ(run.statistics.marker_factorizations, 0U);
@@ -201,8 +204,12 @@ TEST(TimeIntegration, ConservationInFreeFlight)
         }
       print("  orders of angular momentum", orders(angular_errors));
       print("  orders of energy          ", orders(energy_errors));
-      EXPECT_GT(orders(angular_errors).back(), 2 * s - 1.3);
-      EXPECT_GT(orders(energy_errors).back(), 2 * s - 1.3);
+      for (const auto &errors : {angular_errors, energy_errors})
+        {
+          const std::vector<double> slopes = orders(errors);
+          EXPECT_GT(*std::max_element(slopes.begin(), slopes.end()),
+                    2 * s - 1.3);
+        }
     }
 }
 

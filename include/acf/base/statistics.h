@@ -25,12 +25,14 @@ namespace ACF
 
     unsigned long newton_iterations = 0;
 
-    /** Bodies times steps that needed Newton's method with the exact tangent,
-     * the iterations of its linear systems, and factorisations that were
-     * replaced by those of a present tangent. */
-    unsigned long exact_tangent_steps = 0;
-    unsigned long krylov_iterations   = 0;
-    unsigned long factor_refreshes    = 0;
+    /** Bodies times steps that needed the change of low rank of the reduced
+     * strain's tangent, and those that needed Newton's method with the exact
+     * tangent, the iterations of its linear systems, and factorisations that
+     * were replaced by those of a present tangent. */
+    unsigned long corrected_tangent_steps = 0;
+    unsigned long exact_tangent_steps     = 0;
+    unsigned long krylov_iterations       = 0;
+    unsigned long factor_refreshes        = 0;
 
     /** Linear systems solved for the static equilibrium at the start. */
     unsigned long equilibrium_iterations = 0;

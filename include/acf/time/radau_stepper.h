@@ -4,6 +4,7 @@
 #ifndef acf_time_radau_stepper_h
 #define acf_time_radau_stepper_h
 
+#include <acf/solvers/anderson_acceleration.h>
 #include <acf/time/stage_equations.h>
 
 #include <functional>
@@ -26,6 +27,7 @@ namespace ACF
     double newton_tolerance = 1e-10;
 
     unsigned int max_newton_iterations = 20;
+    unsigned int max_krylov_iterations = 40;
     unsigned int max_halvings          = 8;
 
     /** Real one-step matrices as in the paper instead of the exact ones. */
@@ -79,12 +81,14 @@ namespace ACF
    * components.
    *
    * Where the iteration does not contract enough because the stiffness of the
-   * undeformed bodies is no good tangent any more, Newton's method with the
-   * exact tangent of those bodies takes its place (StageTangent); the
-   * StageSolver is then the preconditioner. From time to time the step goes
-   * back to the simplified iteration. If the step has been halved twice without
-   * success, bodies with the strain of Green and Lagrange get factorisations
-   * with their present tangent.
+   * undeformed bodies is no good tangent any more, bodies with the reduced
+   * strain get its change of low rank (ReducedStrainTangent). If that is not
+   * enough, or the strain is that of Green and Lagrange, Newton's method with
+   * the exact tangent of those bodies takes the place of the iteration
+   * (StageTangent); the StageSolver is then the preconditioner. From time to
+   * time the step goes back to the simplified iteration. If the step has been
+   * halved twice without success, bodies with the strain of Green and Lagrange
+   * get factorisations with their present tangent.
    */
   class RadauStepper
   {
@@ -115,9 +119,34 @@ namespace ACF
     void
     predict(const SystemState &state);
 
-    /** Gives the stage solver the rotations and markers of the prediction. */
+    /** How exactly the iteration linearises the elastic forces. */
+    enum class Linearization
+    {
+      /** R A R^T for all bodies. */
+      simplified,
+
+      /** With changes of low rank where bodies need it. */
+      corrected,
+
+      /** The exact tangent where bodies need it. */
+      exact
+    };
+
+    /**
+     * Gives the stage solver the rotations and markers of the prediction, and
+     * unless simplified the changes of low rank.
+     * @return false, and why, if a matrix is singular
+     */
+    bool
+    prepare(StepReport &report);
+
+    /** Predicts and iterates with the present linearisation. */
     void
-    prepare();
+    try_linearization(const SystemState &state, StepReport &report);
+
+    /** The next linearisation to try. @return false if there is none */
+    bool
+    linearize_better();
 
     /**
      * Solves the linear system of an iteration.
@@ -128,24 +157,27 @@ namespace ACF
     using LinearSolver =
       std::function<bool(StageVector &, StageConstraints &, std::string &)>;
 
-    /** Iterates from the prediction to the tolerance, or to a failure. */
+    /** Iterates from the prediction to the tolerance, or to a failure.
+     * @param patience iterations before a failure to contract counts
+     * @param accelerate whether by Anderson's method */
     void
     iterate(const LinearSolver &solve,
             const unsigned int patience,
+            const bool accelerate,
             StepReport &report);
 
     /** Newton's method with the exact tangent of the bodies that need it. */
     void
     iterate_exactly(StepReport &report);
 
-    /** Bodies whose last increments were not small beside the largest. */
+    /** Marks bodies whose last increments were not small beside the largest. */
     void
-    choose_exact_bodies(const StageVector &increment);
+    mark_bodies(const StageVector &increment);
 
-    /** Factorises the tangents of the prediction. @return false if there is
-     * nothing to refresh */
-    bool
-    refresh_factors();
+    /** Makes the tangents of the prediction the matrices of marked bodies, or
+     * restores the old ones if these cannot be factorised. */
+    void
+    refresh_factors(StepReport &report);
 
     /** Corrects the positions of converged stages until constraints hold up to
      * round-off, without solves of bodies. */
@@ -177,13 +209,17 @@ namespace ACF
     StageRotations rotations;
     std::unique_ptr<StageTangent> tangent;
 
-    /** Whether a body is linearised exactly if any is. */
-    std::vector<bool> exact;
+    AndersonAcceleration acceleration;
+
+    Linearization linearization = Linearization::simplified;
+
+    /** Bodies for which the simplified linearisation is not enough. */
+    std::vector<bool> marked;
 
     /** Steps until the simplified iteration is tried again; the next such wait.
      */
-    unsigned int exact_steps = 0;
-    unsigned int next_wait   = first_wait;
+    unsigned int waiting_steps = 0;
+    unsigned int next_wait     = first_wait;
 
     /** Failed tries since the last accepted step. */
     unsigned int n_failures = 0;
