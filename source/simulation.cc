@@ -6,6 +6,7 @@
 #include <acf/io/mode_output.h>
 #include <acf/io/probes.h>
 #include <acf/io/vtu_output.h>
+#include <acf/mechanics/accuracy.h>
 #include <acf/model.h>
 #include <acf/simulation.h>
 #include <acf/version.h>
@@ -168,6 +169,16 @@ namespace ACF
         stream << counted(system.joints().size(), "joint") << " with "
                << counted(system.n_constraints(), "constraint") << "\n";
       stream << std::flush;
+    }
+
+
+
+    void
+    print_accuracy_warnings(const MultibodySystem &system,
+                            std::ostream &warnings)
+    {
+      for (const std::string &warning : accuracy_warnings(system))
+        print_warning(warnings, warning);
     }
 
 
@@ -376,6 +387,7 @@ namespace ACF
         std::make_unique<const MultibodySystem>(model.system, model.directory);
     }
     check_number_of_modes(*system, model.modes.number);
+    print_accuracy_warnings(*system, warnings);
     if (!quiet)
       describe_bodies(*system, stream);
 
@@ -487,6 +499,7 @@ namespace ACF
             check_number_of_modes(system, model.modes.number);
             std::ostringstream log;
             check_start(system, model.start, model.time.step_size, log);
+            print_accuracy_warnings(system, warnings);
             if (!command_line.quiet)
               {
                 describe_bodies(system, stream);
