@@ -55,6 +55,54 @@ namespace ACF
         }
       return principal_ratio(second_moment);
     }
+
+
+
+    // Integral of the products of coordinates about the centre of mass.
+    Matrix3
+    second_moment(const BodyOperators &operators)
+    {
+      Matrix3 result = -operators.inertia;
+      for (unsigned int i = 0; i < dim; ++i)
+        result[i][i] += 0.5 * trace(operators.inertia);
+      return result;
+    }
+
+
+
+    // Of all parts of a body, which have the same coordinates.
+    Matrix3
+    second_moment(const MultibodySystem &system, const std::string &whole)
+    {
+      double mass = 0;
+      Vector3 centre;
+      for (const Body &part : system.bodies())
+        if (part.whole() == whole)
+          {
+            mass += part.operators().mass;
+            centre += part.operators().mass * part.operators().centre;
+          }
+      centre /= mass;
+      Matrix3 result;
+      for (const Body &part : system.bodies())
+        if (part.whole() == whole)
+          {
+            const Vector3 arm = part.operators().centre - centre;
+            result += second_moment(part.operators()) +
+                      part.operators().mass * outer_product(arm, arm);
+          }
+      return result;
+    }
+
+
+
+    double
+    round_off(const Matrix3 &second_moment, const Material &material)
+    {
+      return std::numeric_limits<double>::epsilon() *
+             std::pow(principal_ratio(second_moment), 4) *
+             (material.lambda() + 2 * material.mu()) / material.youngs_modulus;
+    }
   } // namespace
 
 
@@ -70,15 +118,8 @@ namespace ACF
         volume += cell->measure();
       }
 
-    const Material &material = body.material();
-    Matrix3 second_moment    = -body.operators().inertia;
-    for (unsigned int i = 0; i < dim; ++i)
-      second_moment[i][i] += 0.5 * trace(body.operators().inertia);
-    const double slenderness = principal_ratio(second_moment);
     return {weighted / volume,
-            std::numeric_limits<double>::epsilon() * std::pow(slenderness, 4) *
-              (material.lambda() + 2 * material.mu()) /
-              material.youngs_modulus};
+            round_off(second_moment(body.operators()), body.material())};
   }
 
 
@@ -94,10 +135,13 @@ namespace ACF
         if (!seen.insert(&body.reference()).second ||
             wholes.count(body.whole()) > 0)
           continue;
-        const BodyAccuracy accuracy = body_accuracy(body);
-        const double nu             = body.material().poissons_ratio;
-        const std::string name      = "the body '" + body.name() + "'";
-        const std::size_t n_before  = warnings.size();
+        BodyAccuracy accuracy = body_accuracy(body);
+        if (!body.whole().empty()) // parts are not much better than the whole
+          accuracy.round_off =
+            round_off(second_moment(system, body.whole()), body.material());
+        const double nu            = body.material().poissons_ratio;
+        const std::string name     = "the body '" + body.name() + "'";
+        const std::size_t n_before = warnings.size();
         if (nu > largest_poissons_ratio &&
             accuracy.elongation > largest_elongation)
           warnings.push_back(
@@ -113,8 +157,7 @@ namespace ACF
             name + " is so slender and so little compressible that rounding " +
             "errors may change its bending by a part of " +
             format_number(10 * accuracy.round_off) +
-            ", and that an equilibrium may not be found; cut it into parts, " +
-            "or use a smaller Poisson's ratio");
+            ", and that an equilibrium may not be found");
         if (!body.whole().empty() && warnings.size() > n_before)
           wholes.insert(body.whole());
       }

@@ -84,6 +84,12 @@ TEST(Accuracy, WarningsAtTheLimits)
   const auto slender = warnings({bar("555", "hexahedron", 0)});
   ASSERT_EQ(slender.size(), 1U);
   EXPECT_TRUE(contains(slender[0], "so slender")) << slender[0];
+
+  BodyParameters in_parts = bar("555", "hexahedron", 0);
+  in_parts.mesh.cut       = "2 along x";
+  EXPECT_EQ(warnings({in_parts}).size(), 1U);
+  in_parts.mesh.box_to[0] = 540;
+  EXPECT_TRUE(warnings({in_parts}).empty());
 }
 
 TEST(Accuracy, OneWarningForBodiesWithTheSameOperatorsAndForParts)

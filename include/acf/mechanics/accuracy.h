@@ -43,7 +43,7 @@ namespace ACF
   /**
    * One sentence for each body that is outside of what was measured to be
    * accurate; bodies with the same operators, and parts of a body, have one in
-   * common.
+   * common. Parts have the rounding errors of the whole.
    */
   std::vector<std::string>
   accuracy_warnings(const MultibodySystem &system);
