@@ -591,7 +591,7 @@ namespace Stress
               [=](Row &row) { quasi_static(row, strain, ratio); });
         for (const double angle : {0.01, 0.1, 0.3, 1.})
           add("2 spin of " + shown(angle) + " rad per step, " + strain,
-              angle > 0.2,
+              angle > 0.2 && (angle < 1 || strain == "reduced"),
               [=](Row &row) { spin(row, strain, angle); });
         add("2 spinning rod, extension, " + strain, true, [=](Row &row) {
           spin_extension(row, strain);
@@ -613,7 +613,7 @@ namespace Stress
     add("4 rod with a rod 1e6 times as light", true, light_tail);
     for (const std::string strain : {"reduced", "Green-Lagrange"})
       {
-        for (const auto &[cells, tolerance] : {std::make_pair("2", 0.05),
+        for (const auto &[cells, tolerance] : {std::make_pair("2", 0.1),
                                                std::make_pair("4", 0.02),
                                                std::make_pair("8", 0.01),
                                                std::make_pair("16", 0.005)})
