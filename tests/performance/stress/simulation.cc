@@ -3,6 +3,7 @@
 
 #include <acf/base/console.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 
@@ -64,7 +65,9 @@ namespace Stress
   void
   Row::fail(const std::string &message)
   {
-    add("no error", message, false);
+    std::string line = message;
+    std::replace(line.begin(), line.end(), '\n', ' ');
+    add("no error", line, false);
   }
 
 
@@ -170,11 +173,14 @@ namespace Stress
     Progress progress(nowhere, false, model.time.end_time);
     const double n_steps = model.time.end_time / model.time.step_size;
     Watch watch(observe, 100 + 20 * n_steps, time_reached);
-    ValidityMonitor validity(
-      system, model.validity, model.time.end_time, warnings, statistics);
     std::vector<Observer *> observers = {&watch};
+    std::unique_ptr<ValidityMonitor> validity;
     if (model.validity.action != ValidityParameters::Action::ignore)
-      observers.push_back(&validity);
+      {
+        validity = std::make_unique<ValidityMonitor>(
+          system, model.validity, model.time.end_time, warnings, statistics);
+        observers.push_back(validity.get());
+      }
     try
       {
         run_time_loop(
