@@ -317,7 +317,7 @@ namespace Stress
         cases.push_back(
           {"13 release from an arc of 1 rad, length / height 20, " + strain,
            true,
-           [=](Row &row) { release(row, strain, 1, 0.05, 6, 0.4); }});
+           [=](Row &row) { release(row, strain, 1, 0.05, 4, 0.4); }});
         cases.push_back(
           {"13 release from a quarter of a circle, length / height 20, " +
              strain,

@@ -10,11 +10,15 @@
 #include "stress.h"
 
 #include <deal.II/base/exceptions.h>
+#include <deal.II/base/multithread_info.h>
 
 #include <mpi.h>
 
 #include <chrono>
 #include <iostream>
+
+extern "C" void
+openblas_set_num_threads(int n_threads);
 
 int
 main(int argc, char **argv)
@@ -32,6 +36,9 @@ main(int argc, char **argv)
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   dealii::deal_II_exceptions::disable_abort_on_exception();
+  // most models are too small for more threads
+  dealii::MultithreadInfo::set_thread_limit(1);
+  openblas_set_num_threads(1);
 
   unsigned int n_run = 0, n_failed = 0;
   if (option != "--list")
