@@ -156,8 +156,7 @@ namespace ACF
           warnings.push_back(
             name + " is so slender and so little compressible that rounding " +
             "errors may change its bending by a part of " +
-            format_number(10 * accuracy.round_off) +
-            ", and that an equilibrium may not be found");
+            format_number(10 * accuracy.round_off));
         if (!body.whole().empty() && warnings.size() > n_before)
           wholes.insert(body.whole());
       }

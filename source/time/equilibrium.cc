@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 
 namespace ACF
 {
@@ -136,7 +137,10 @@ namespace ACF
         const double ratio  = measured ? step.size / previous_size : 1.;
         if (step.size <= 1e-2 * tolerance ||
             (ratio < 1 && step.size * ratio / (1 - ratio) <= tolerance) ||
-            (measured && ratio > 0.5 && step.size <= round_off))
+            (measured && ratio > 0.5 &&
+             (step.size <= round_off ||
+              (step.deformation < small_step &&
+               step.size <= 10 * round_off_step(state, load_factor)))))
           return;
         previous_size = step.size;
         wait -= (wait > 0);
@@ -211,7 +215,9 @@ namespace ACF
             return step;
           }
         step.failure = "it is not stable";
-        if (i == 0 && newton.size > 1e3 * round_off && increment.curvature < 0)
+        if (i == 0 && newton.size > 1e3 * round_off &&
+            increment.curvature < 0 &&
+            newton.size > 10 * round_off_step(state, load_factor))
           return step;
 
         step.failure = "the iteration does not converge";
@@ -313,6 +319,46 @@ namespace ACF
           rest[k] -= mean[k % dim];
         step.deformation = std::max(step.deformation, rest.l2_norm() / unit);
       }
+  }
+
+
+
+  double
+  EquilibriumSolver::round_off_step(const SystemState &state,
+                                    const double load_factor)
+  {
+    SystemState moved(state);
+    SystemVector change(state.positions);
+    std::minstd_rand random;
+    for (unsigned int b = 0; b < change.size(); ++b)
+      {
+        const double length = system.bodies()[b].operators().length;
+        for (unsigned int k = 0; k < change[b].size(); ++k)
+          {
+            double &x      = moved.positions[b][k];
+            const double y = x;
+            x += (random() % 2 == 0 ? 4 : -4) *
+                 std::numeric_limits<double>::epsilon() * length;
+            change[b][k] = x - y;
+          }
+      }
+    SystemVector error(change), force(change);
+    tangent.apply_stiffness(error, change);
+    Eigen::VectorXd gap = Eigen::VectorXd::Zero(system.n_constraints());
+    for (const double sign : {1., -1.})
+      {
+        if (!forces(
+              sign > 0 ? moved : state, state.multipliers, load_factor, force))
+          return 0;
+        for (unsigned int b = 0; b < force.size(); ++b)
+          error[b].add(sign, force[b]);
+      }
+    tangent.solve(error, gap);
+    Step step;
+    const unsigned int body = moving_body;
+    measure(error, step);
+    moving_body = body;
+    return step.size;
   }
 
 

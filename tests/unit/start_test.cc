@@ -361,6 +361,39 @@ TEST(Equilibrium, CantileverUnderGravity)
 
 
 
+// 1 m x 1 mm x 1 mm: rounding errors of the forces move it by more than the
+// tolerance.
+TEST(Equilibrium, SlendernessThousand)
+{
+  BeamText rod;
+  rod.cells          = "1, 8, 1";
+  const double side  = 1e-3;
+  const double E     = 2.1e11;
+  const double exact = 1e-3;
+  const double I     = std::pow(side, 4) / 12;
+  const double force = 3 * E * I * exact;
+  std::string text   = one_beam(
+    rod,
+    clamp +
+      "subsection Loads\n set Names = tip\n subsection tip\n"
+        "  set Type = force\n  set On = beam: y max\n  set Value = 0; 0; " +
+      std::to_string(-1e6 * force) + "e-6\n end\nend\n" + equilibrium);
+  const auto replace = [&text](const std::string &from, const std::string &to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("-0.015, 0, -0.025", "-0.0005, 0, -0.0005");
+  replace("0.015, 1,  0.025", "0.0005, 1, 0.0005");
+  StartedModel start(text);
+  const double found = -start.position(0, "y max")[2];
+  // eight cells: 0.5 %
+  EXPECT_NEAR(found / exact, 1, 7e-3);
+  EXPECT_LE(start.statistics.equilibrium_iterations, 30U);
+  report("deflection", found / exact);
+  report("iterations", start.statistics.equilibrium_iterations);
+}
+
+
+
 TEST(Equilibrium, PendulumsFindTheHangingPosition)
 {
   // angles to the horizontal; the second is above the hinge

@@ -123,6 +123,15 @@ namespace ACF
     void
     measure(const SystemVector &displacement, Step &step);
 
+    /**
+     * The size of a step that comes from rounding errors of the forces: of what
+     * a change of the positions in their last digits makes of the forces
+     * besides their derivative. For a slender body the forces are those of
+     * stretched cells, and its bending stiffness is small.
+     */
+    double
+    round_off_step(const SystemState &state, const double load_factor);
+
     void
     check_distance(const SystemState &state) const;
 
