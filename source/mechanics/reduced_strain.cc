@@ -93,6 +93,40 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // In the frame of the body.
+    Vector3
+    spin_in(const BodyOperators &body,
+            const BodyRotation &frame,
+            const NodalVector &velocities)
+    {
+      const Matrix3 H =
+        transpose(frame.rotation) * mean_deformation_gradient(body, velocities);
+      Vector3 spin;
+      for (unsigned int i = 0; i < dim; ++i)
+        spin[i] = scalar_product(frame.spin_gradient[i], H);
+      return spin;
+    }
+  } // namespace
+
+
+
+  std::optional<Vector3>
+  body_spin(const BodyOperators &body,
+            const RotationMeasure measure,
+            const NodalVector &positions,
+            const NodalVector &velocities)
+  {
+    const auto frame =
+      body_rotation(mean_deformation_gradient(body, positions), measure);
+    if (!frame)
+      return {};
+    return frame->rotation * spin_in(body, *frame, velocities);
+  }
+
+
+
   void
   co_rotated_velocity(const BodyOperators &body,
                       const BodyRotation &frame,
@@ -101,12 +135,8 @@ namespace ACF
                       NodalVector &rate)
   {
     AssertDimension(rate.size(), body.n_unknowns());
-    const Matrix3 inverse = transpose(frame.rotation);
-    const Matrix3 H = inverse * mean_deformation_gradient(body, velocities);
-    Vector3 spin;
-    for (unsigned int i = 0; i < dim; ++i)
-      spin[i] = scalar_product(frame.spin_gradient[i], H);
-
+    const Matrix3 inverse         = transpose(frame.rotation);
+    const Vector3 spin            = spin_in(body, frame, velocities);
     const Vector3 centre          = mass_mean(body, positions);
     const Vector3 centre_velocity = mass_mean(body, velocities);
     for (unsigned int a = 0; a < body.n_nodes; ++a)

@@ -8,6 +8,7 @@
 #include <deal.II/fe/fe_values.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace ACF
@@ -122,22 +123,105 @@ namespace ACF
 
 
 
+    // Lengths relative to the thickness of a body along them.
+    class Thickness
+    {
+    public:
+      explicit Thickness(const BodyOperators &body)
+      {
+        // of a homogeneous body J = (tr(inertia) I / 2 - inertia) / mass
+        const Matrix3 J =
+          (0.5 * trace(body.inertia) * Matrix3(unit_symmetric_tensor<dim>()) -
+           body.inertia) /
+          body.mass;
+        inverse = invert(12 * J);
+      }
+
+      double
+      squared(const Vector3 &length) const
+      {
+        return length * (inverse * length);
+      }
+
+    private:
+      Matrix3 inverse;
+    };
+
+
+
+    Vector3
+    value(const NodalVector &q, const unsigned int node)
+    {
+      return Vector3({q[dim * node], q[dim * node + 1], q[dim * node + 2]});
+    }
+
+
+
     double
     largest_deflection(const BodyOperators &body, const NodalVector &q)
     {
-      // of a homogeneous body J = (tr(inertia) I / 2 - inertia) / mass
-      const Matrix3 J =
-        (0.5 * trace(body.inertia) * Matrix3(unit_symmetric_tensor<dim>()) -
-         body.inertia) /
-        body.mass;
-      const Matrix3 inverse = invert(12 * J);
-      double largest        = 0;
+      const Thickness thickness(body);
+      double largest = 0;
       for (unsigned int a = 0; a < body.n_nodes; ++a)
+        largest = std::max(largest, thickness.squared(value(q, a)));
+      return std::sqrt(largest);
+    }
+
+
+
+    // Ends and middle of an edge of a cell, by shape functions.
+    using Edge = std::array<unsigned int, 3>;
+
+    std::vector<Edge>
+    cell_edges(const FiniteElement<dim> &element)
+    {
+      const auto &points            = element.get_unit_support_points();
+      const ReferenceCell reference = element.reference_cell();
+      const auto node_at            = [&points](const Point<dim> &x) {
+        return std::find_if(points.begin(),
+                            points.end(),
+                            [&x](const Point<dim> &y) {
+                              return x.distance(y) < 1e-8;
+                            }) -
+               points.begin();
+      };
+      std::vector<Edge> edges;
+      for (unsigned int a = 0; a < reference.n_vertices(); ++a)
+        for (unsigned int b = 0; b < a; ++b)
+          {
+            const Point<dim> from = reference.template vertex<dim>(a),
+                             to   = reference.template vertex<dim>(b);
+            // any two vertices of a tetrahedron, but no diagonals of a cube
+            if (!reference.is_simplex() && from.distance(to) > 1.1)
+              continue;
+            Edge edge;
+            edge[0] = node_at(from);
+            edge[1] = node_at(to);
+            edge[2] = node_at(from + 0.5 * (to - from));
+            edges.push_back(edge);
+          }
+      return edges;
+    }
+
+
+
+    double
+    largest_sagitta(const Body &body, const NodalVector &q)
+    {
+      const BodyDiscretization &space = body.discretization();
+      const std::vector<Edge> edges   = cell_edges(space.scalar_element());
+      const Thickness thickness(body.operators());
+      std::vector<unsigned int> nodes(space.scalar_element().n_dofs_per_cell());
+      double largest = 0;
+      for (const auto &cell : space.dof_handler().active_cell_iterators())
         {
-          Vector3 q_a;
-          for (unsigned int i = 0; i < dim; ++i)
-            q_a[i] = q[dim * a + i];
-          largest = std::max(largest, q_a * (inverse * q_a));
+          space.get_nodes(cell, nodes);
+          for (const Edge &edge : edges)
+            largest =
+              std::max(largest,
+                       thickness.squared(value(q, nodes[edge[2]]) -
+                                         0.5 * (value(q, nodes[edge[0]]) +
+                                                value(q, nodes[edge[1]]))));
         }
       return std::sqrt(largest);
     }
@@ -158,7 +242,8 @@ namespace ACF
     co_rotated_displacement(body.operators(), positions, frame->rotation, q);
     StrainValidity validity;
     judge_strains(body, q, validity);
-    validity.deflection = largest_deflection(body.operators(), q);
+    validity.deflection   = largest_deflection(body.operators(), q);
+    validity.cell_bending = largest_sagitta(body, q);
     return validity;
   }
 } // namespace ACF

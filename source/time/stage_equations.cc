@@ -255,7 +255,6 @@ namespace ACF
   StageEquations::reduced_strain_changes(
     const std::vector<bool> &corrected) const
   {
-    const unsigned int n = tableau.n_stages();
     std::vector<LowRankChange> changes(corrected.size());
     for (unsigned int b = 0; b < corrected.size(); ++b)
       {
@@ -264,20 +263,18 @@ namespace ACF
         changes[b].columns.resize(operators.n_unknowns(), 0);
         if (!corrected[b] || body.strain_measure() != StrainMeasure::reduced)
           continue;
-        NodalVector mean(operators.n_unknowns()), local(mean);
-        for (unsigned int i = 0; i < n; ++i)
-          {
-            const NodalVector x = position(i, b);
-            const auto frame =
-              body_rotation(mean_deformation_gradient(operators, x),
-                            body.rotation_measure());
-            if (!frame)
-              return {};
-            NodeRotations(frame->rotation).to_body(x, operators.n_nodes, local);
-            mean.add(1. / n, local);
-          }
+        // not at the prediction, which is stretched where the body turns: its
+        // stress would make the matrix too stiff
+        const NodalVector &x = state->positions[b];
+        const auto frame =
+          body_rotation(mean_deformation_gradient(operators, x),
+                        body.rotation_measure());
+        if (!frame)
+          return {};
+        NodalVector local(operators.n_unknowns());
+        NodeRotations(frame->rotation).to_body(x, operators.n_nodes, local);
         auto tangent =
-          reduced_strain_tangent(operators, body.rotation_measure(), mean);
+          reduced_strain_tangent(operators, body.rotation_measure(), local);
         if (!tangent)
           return {};
         changes[b] = {std::move(tangent->columns),

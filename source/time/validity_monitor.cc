@@ -31,10 +31,10 @@ namespace ACF
       const char *documentation;
     };
 
-    const std::array<Figure, 5> &
+    const std::array<Figure, 6> &
     figures()
     {
-      static const std::array<Figure, 5> all = {
+      static const std::array<Figure, 6> all = {
         {{"Strain",
           "strain",
           "",
@@ -67,7 +67,14 @@ namespace ACF
           &StrainValidity::deflection,
           "Largest displacement in the frame of the body, each component "
           "divided by the thickness of the body along it; 0: no limit. "
-          "Units: none."}}};
+          "Units: none."},
+         {"Cell bending",
+          "cell bending",
+          "",
+          &StrainValidity::cell_bending,
+          "Largest bending of an edge of a cell out of its chord, divided by "
+          "the thickness of the body along it; counts with the strain of Green "
+          "and Lagrange; 0: no limit. Units: none."}}};
       return all;
     }
 
@@ -89,12 +96,15 @@ namespace ACF
 
   namespace
   {
-    // The strain of Green and Lagrange is limited by its material only.
+    // The strain of Green and Lagrange is limited by its material and by its
+    // cells only.
     bool
     is_judged(const Body &body, const Figure &figure)
     {
-      return body.strain_measure() == StrainMeasure::reduced ||
-             figure.value == &StrainValidity::strain;
+      if (body.strain_measure() == StrainMeasure::reduced)
+        return figure.value != &StrainValidity::cell_bending;
+      return figure.value == &StrainValidity::strain ||
+             figure.value == &StrainValidity::cell_bending;
     }
   } // namespace
 

@@ -175,6 +175,12 @@ TEST(StrainValidity, BentBar)
   report("neglected energy of the bar", found.neglected_energy);
   report("neglected strain of the bar", found.neglected_strain);
 
+  // cells of the length L/5
+  EXPECT_NEAR(found.cell_bending,
+              k * L * L / 200 / h,
+              1e-4 * found.cell_bending);
+  report("sagitta of a cell", found.cell_bending);
+
   // the end goes up by w(L/2) less the mean of w, and in or out by the turned
   // section
   const double up = (k * L * L / 8 - k * L * L / 24) / h;

@@ -29,6 +29,18 @@ namespace ACF
   mass_mean(const BodyOperators &body, const NodalVector &field);
 
   /**
+   * Angular velocity $R \dot\varphi$ of the frame of a body in the world,
+   * rad/s,
+   * $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes g_a$.
+   * @return nothing if the body is turned inside out
+   */
+  std::optional<Vector3>
+  body_spin(const BodyOperators &body,
+            const RotationMeasure measure,
+            const NodalVector &positions,
+            const NodalVector &velocities);
+
+  /**
    * Co-rotated displacement
    * $q_a = R^T (x_a - \bar x) - (X_a - \bar X)$ with the centres of mass
    * $\bar x$, $\bar X$, which removes the rigid translation.

@@ -54,6 +54,17 @@ namespace ACF
      * smaller one of a rod of radius r is $\sqrt3\, r$.
      */
     double deflection = 0;
+
+    /**
+     * How much single cells bend: the largest sagitta
+     * $s = q_m - \frac12 (q_a + q_b)$ of an edge with the middle node m between
+     * the vertices a and b, measured like the deflection. With the strain of
+     * Green and Lagrange a bent cell is too stiff, relative to bending by about
+     * $(s/h)^2$: the quadratic part of its strain has higher degree than the
+     * linear part, which cannot balance it (membrane locking). The reduced
+     * strain has no such part.
+     */
+    double cell_bending = 0;
   };
 
   /**

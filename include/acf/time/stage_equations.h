@@ -72,8 +72,9 @@ namespace ACF
     rotations() const;
 
     /**
-     * U and B of the reduced strain at the mean of the stages in the frame of
-     * the body, see ReducedStrainTangent.
+     * U and B of the reduced strain at the start of the step in the frame of
+     * the body, see ReducedStrainTangent. (The prediction may be stretched
+     * where the body turns; its stress would make the matrix too stiff.)
      * @param corrected the bodies that get them; others and those with the
      * strain of Green and Lagrange have columns of rank 0
      */

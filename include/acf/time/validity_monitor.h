@@ -24,7 +24,7 @@ namespace ACF
     Action action = Action::warn;
 
     /** Limits of the figures; zero: none. */
-    StrainValidity limits{0.02, 0.1, 0, 0.1, 0};
+    StrainValidity limits{0.02, 0.1, 0, 0.1, 0, 0.1};
 
     /** Declares the entries in the current subsection. */
     void

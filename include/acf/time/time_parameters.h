@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_time_time_parameters_h
+#define acf_time_time_parameters_h
+
+#include <acf/base/types.h>
+
+namespace dealii
+{
+  class ParameterHandler;
+}
+
+namespace ACF
+{
+  /** What a model file says of the time integration. */
+  struct TimeParameters
+  {
+    unsigned int n_stages = 2;
+
+    /** s */
+    double end_time  = 0;
+    double step_size = 0;
+
+    /** Bound on the predicted error of the iteration, relative to the bodies.
+     */
+    double newton_tolerance = 1e-10;
+
+    unsigned int max_newton_iterations = 20;
+    unsigned int max_krylov_iterations = 40;
+    unsigned int max_halvings          = 8;
+
+    /** Real one-step matrices as in the paper instead of the exact ones. */
+    bool one_step_matrices = false;
+
+    void
+    add_parameters(ParameterHandler &prm);
+
+    /** @throws InputError for values that the patterns cannot exclude */
+    void
+    check() const;
+  };
+} // namespace ACF
+
+#endif

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+#include <acf/time/time_parameters.h>
+
+#include <deal.II/base/parameter_handler.h>
+
+namespace ACF
+{
+  void
+  TimeParameters::add_parameters(ParameterHandler &prm)
+  {
+    prm.add_parameter("Stages",
+                      n_stages,
+                      "Stages s of the Radau IIA method; positions converge "
+                      "with order 2s-1, velocities with s, reactions with s-1. "
+                      "Units: none.",
+                      Patterns::Integer(2, 3));
+    prm.add_parameter("End time",
+                      end_time,
+                      "Time at which the simulation ends; it starts at zero; "
+                      "required, but for a simulation that is over after the "
+                      "static equilibrium or the modes at the start. Units: "
+                      "s.",
+                      Patterns::Double(0));
+    prm.add_parameter("Step size",
+                      step_size,
+                      "Size of the time steps; required. Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter(
+      "Newton tolerance",
+      newton_tolerance,
+      "Bound on the predicted error of the positions that the iteration of a "
+      "step leaves, relative to the length of a body. Units: none.",
+      Patterns::Double(1e-14, 1e-2));
+    prm.add_parameter("Maximal Newton iterations",
+                      max_newton_iterations,
+                      "Iterations after which a step is given up and halved. "
+                      "Units: none.",
+                      Patterns::Integer(2, 1000));
+    prm.add_parameter("Maximal Krylov iterations",
+                      max_krylov_iterations,
+                      "Iterations of a linear system with the exact tangent, "
+                      "which takes over where the iteration of a step fails, "
+                      "after which the step is given up. Units: none.",
+                      Patterns::Integer(1, 1000));
+    prm.add_parameter("Maximal halvings",
+                      max_halvings,
+                      "How often a step that does not converge is halved "
+                      "before the simulation fails. Units: none.",
+                      Patterns::Integer(0, 30));
+    prm.declare_entry(
+      "Stage matrices",
+      "diagonalized",
+      Patterns::Selection("diagonalized|one-step"),
+      "Matrices of the Newton iteration: the exact ones of the stages, "
+      "diagonalised (one complex factorisation per conjugate pair), or for "
+      "comparison real one-step matrices in the manner of the paper, which "
+      "need more iterations. Units: none.");
+    prm.add_action("Stage matrices", [this](const std::string &value) {
+      one_step_matrices = (value == "one-step");
+    });
+  }
+
+
+
+  void
+  TimeParameters::check() const
+  {
+    const auto require_positive = [](const std::string &entry,
+                                     const double value) {
+      if (!(value > 0))
+        throw InputError("Time integration",
+                         entry,
+                         "nothing or zero",
+                         "a positive number");
+    };
+    require_positive("End time", end_time);
+    require_positive("Step size", step_size);
+    if (step_size > end_time)
+      throw InputError("Time integration",
+                       "Step size",
+                       "a step larger than the End time",
+                       "a positive number not larger than the End time");
+  }
+} // namespace ACF
