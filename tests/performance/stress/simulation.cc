@@ -81,7 +81,8 @@ namespace Stress
          << statistics.newton_iterations;
     if (statistics.equilibrium_iterations > 0)
       text << " + " << statistics.equilibrium_iterations << " static";
-    text << " | " << statistics.exact_tangent_steps << " | "
+    text << " | " << statistics.corrected_tangent_steps << " | "
+         << statistics.exact_tangent_steps << " | "
          << statistics.krylov_iterations << " | "
          << statistics.constraint_corrections << " | " << statistics.halvings
          << " | " << statistics.factor_refreshes << " | "
@@ -225,6 +226,7 @@ namespace Stress
     sum.rejected_steps += statistics.rejected_steps;
     sum.newton_iterations += statistics.newton_iterations;
     sum.equilibrium_iterations += statistics.equilibrium_iterations;
+    sum.corrected_tangent_steps += statistics.corrected_tangent_steps;
     sum.exact_tangent_steps += statistics.exact_tangent_steps;
     sum.krylov_iterations += statistics.krylov_iterations;
     sum.constraint_corrections += statistics.constraint_corrections;

@@ -43,10 +43,9 @@ main(int argc, char **argv)
   unsigned int n_run = 0, n_failed = 0;
   if (option != "--list")
     std::cout << "| case | expected (source) | got | steps | rejected | "
-                 "iterations | exact-tangent steps | of GMRES | corrections | "
-                 "halvings | "
-                 "refreshes | verdict |\n"
-                 "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
+                 "iterations | corrected steps | exact-tangent steps | "
+                 "of GMRES | corrections | halvings | refreshes | verdict |\n"
+                 "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
   for (const auto &cases :
        {scale_cases(), motion_cases(), deflection_cases(), model_cases()})
     for (const Case &one : cases)
