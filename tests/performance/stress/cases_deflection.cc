@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-// Buckling, snap-through, loads and releases far from equilibrium.
+// Cases 11 and 13: buckling, snap-through, loads and releases far from
+// equilibrium.
 
 #include <acf/time/modes.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-// Thin pendulum on unsymmetric meshes, spin-up beam.
+// Cases 10 and 12: thin pendulum on unsymmetric meshes, spin-up beam.
 
 #include <cmath>
 

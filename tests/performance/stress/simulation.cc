@@ -325,15 +325,4 @@ namespace Stress
            "\nset Stages = " + std::to_string(stages) +
            "\nend\nsubsection Validity\nset Action = ignore\nend\n";
   }
-
-
-
-  std::complex<double>
-  stability_function(const unsigned int n_stages, const std::complex<double> z)
-  {
-    if (n_stages == 2)
-      return (1. + z / 3.) / (1. - 2. * z / 3. + z * z / 6.);
-    return (1. + 2. * z / 5. + z * z / 20.) /
-           (1. - 3. * z / 5. + 3. * z * z / 20. - z * z * z / 60.);
-  }
 } // namespace Stress

@@ -46,8 +46,12 @@ main(int argc, char **argv)
                  "iterations | corrected steps | exact-tangent steps | "
                  "of GMRES | corrections | halvings | refreshes | verdict |\n"
                  "|---|---|---|--:|--:|--:|--:|--:|--:|--:|--:|--:|---|\n";
-  for (const auto &cases :
-       {scale_cases(), motion_cases(), deflection_cases(), model_cases()})
+  for (const auto &cases : {step_cases(),
+                            scale_cases(),
+                            mechanism_cases(),
+                            motion_cases(),
+                            deflection_cases(),
+                            model_cases()})
     for (const Case &one : cases)
       {
         if (option == "--list")

@@ -7,7 +7,6 @@
 #include <acf/io/probes.h>
 #include <acf/model.h>
 
-#include <complex>
 #include <functional>
 #include <sstream>
 #include <string>
@@ -82,11 +81,19 @@ namespace Stress
     std::function<void(Row &)> run;
   };
 
-  /** Steps, spins, ratios of stiffness and mass, slenderness. */
+  /** Sizes of the steps, spins. */
+  std::vector<Case>
+  step_cases();
+
+  /** Ratios of stiffness and mass, slenderness. */
   std::vector<Case>
   scale_cases();
 
-  /** Dead centres, inverted starts, impacts, many steps. */
+  /** Dead centres and change points. */
+  std::vector<Case>
+  mechanism_cases();
+
+  /** Inverted starts, impacts, many steps. */
   std::vector<Case>
   motion_cases();
 
@@ -201,11 +208,6 @@ namespace Stress
 
   std::string
   time_section(const double end, const double step, const unsigned stages = 2);
-
-  /** Stability function of Radau IIA with 2 or 3 stages (Hairer and Wanner,
-   * Sec. IV.5). */
-  std::complex<double>
-  stability_function(const unsigned int n_stages, const std::complex<double> z);
 } // namespace Stress
 
 #endif
