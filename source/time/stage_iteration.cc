@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
+#include <acf/mechanics/reduced_strain.h>
 #include <acf/time/stage_iteration.h>
 
 #include <algorithm>
@@ -187,10 +188,16 @@ namespace ACF
     report.failure.clear();
     while (n_iterations < parameters.max_newton_iterations)
       {
-        if (!equations.residual(increment,
-                                constraint_increment,
-                                report.failure) ||
-            !solve(increment, constraint_increment, report.failure))
+        bool solved =
+          equations.residual(increment, constraint_increment, report.failure);
+        if (solved)
+          {
+            const auto means =
+              free_translations(increment, equations.step_size());
+            solved = solve(increment, constraint_increment, report.failure);
+            translate(means, increment);
+          }
+        if (!solved)
           {
             // the prediction may be at fault, or the iterations since
             if (n_iterations > 0)
@@ -264,6 +271,53 @@ namespace ACF
       }
     report.failure = "the iteration did not reach its tolerance";
     mark_bodies(increment);
+  }
+
+
+
+  std::vector<std::vector<Vector3>>
+  StageIteration::free_translations(const StageVector &forces,
+                                    const double step_size) const
+  {
+    const unsigned int n_stages = tableau.n_stages();
+    std::vector<std::vector<Vector3>> means(marked.size());
+    for (unsigned int b = 0; b < marked.size(); ++b)
+      {
+        const Body &body = system.bodies()[b];
+        if (!system.body_markers(b).empty() ||
+            (body.strain_measure() == StrainMeasure::reduced &&
+             linearization != Linearization::exact))
+          continue;
+        Eigen::MatrixXd resultants = Eigen::MatrixXd::Zero(n_stages, dim);
+        for (unsigned int i = 0; i < n_stages; ++i)
+          for (unsigned int k = 0; k < forces[i][b].size(); ++k)
+            resultants(i, k % dim) += forces[i][b][k];
+        const Eigen::MatrixXd rates = tableau.A.inverse() / step_size;
+        const Eigen::MatrixXd inertia =
+          body.operators().mass * (rates * rates + body.mass_damping() * rates);
+        const Eigen::MatrixXd solution = inertia.lu().solve(resultants);
+        for (unsigned int i = 0; i < n_stages; ++i)
+          means[b].emplace_back(
+            Vector3({solution(i, 0), solution(i, 1), solution(i, 2)}));
+      }
+    return means;
+  }
+
+
+
+  void
+  StageIteration::translate(const std::vector<std::vector<Vector3>> &means,
+                            StageVector &increment) const
+  {
+    for (unsigned int b = 0; b < means.size(); ++b)
+      for (unsigned int i = 0; i < means[b].size(); ++i)
+        {
+          NodalVector &z = increment[i][b];
+          const Vector3 shift =
+            means[b][i] - mass_mean(system.bodies()[b].operators(), z);
+          for (unsigned int k = 0; k < z.size(); ++k)
+            z[k] += shift[k % dim];
+        }
   }
 
 

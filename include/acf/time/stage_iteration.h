@@ -152,6 +152,20 @@ namespace ACF
     void
     iterate_exactly(StageEquations &equations, StepReport &report);
 
+    /**
+     * Mean increments that the resultants of the forces ask for, for free
+     * bodies whose linear system does not conserve momentum: internal forces
+     * have no resultant, but those of frames that differ between nodes do, and
+     * those of inexact solutions. [body][stage], empty for other bodies.
+     */
+    std::vector<std::vector<Vector3>>
+    free_translations(const StageVector &forces, const double step_size) const;
+
+    /** Gives increments these means. */
+    void
+    translate(const std::vector<std::vector<Vector3>> &means,
+              StageVector &increment) const;
+
     /** Marks bodies whose last increments were not small beside the largest. */
     void
     mark_bodies(const StageVector &increment);
