@@ -296,6 +296,41 @@ TEST(ValidityMonitor, AZeroLimitIsNone)
 
 
 
+TEST(ValidityMonitor, BentCellsCountWithGreenLagrange)
+{
+  ValidityParameters limits;
+  limits.limits              = StrainValidity();
+  limits.limits.cell_bending = 0.1;
+  for (const auto measure :
+       {StrainMeasure::reduced, StrainMeasure::green_lagrange})
+    for (const double k : {0.4, 0.6})
+      {
+        SystemParameters parameters;
+        parameters.bodies = {parameters_of(bar_mesh, RotationMeasure::polar)};
+        parameters.bodies[0].strain_measure = measure;
+        const MultibodySystem system(parameters, ".");
+        SystemState state = system.initial_state();
+        NodalVector &x    = state.positions[0];
+        for (unsigned int a = 0; a < x.size() / dim; ++a)
+          {
+            const double axial = x[dim * a];
+            x[dim * a] -= k * axial * x[dim * a + 2];
+            x[dim * a + 2] += k * axial * axial / 2;
+          }
+        std::ostringstream warnings;
+        Statistics statistics;
+        ValidityMonitor monitor(system, limits, 1, warnings, statistics);
+        monitor.observe(state);
+        // cells of a fifth of the length 2, height 0.1: 0.2 k
+        const bool warns =
+          warnings.str().find("cell bending 0.1") != std::string::npos;
+        EXPECT_EQ(warns, measure == StrainMeasure::green_lagrange && k > 0.5)
+          << warnings.str();
+      }
+}
+
+
+
 TEST(ValidityMonitor, Stops)
 {
   ValidityParameters parameters;
