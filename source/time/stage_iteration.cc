@@ -13,9 +13,8 @@ namespace ACF
 {
   namespace
   {
-    // Relative to the length of a body: from predictions farther off, good
-    // tangents lead to other solutions of the equations of the stages, in which
-    // a body has turned by another angle.
+    // Relative to the length of a body: far from the solution a tangent may be
+    // so stiff against turning that short increments do not mean a small error.
     constexpr double largest_correction = 0.1;
   } // namespace
 
