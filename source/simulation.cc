@@ -15,8 +15,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include <mpi.h>
-
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -30,38 +28,6 @@ namespace ACF
 {
   namespace
   {
-    // MUMPS needs MPI, even in one process. Only runs start it.
-    class MpiSession
-    {
-    public:
-      MpiSession()
-      {
-        int initialized = 0;
-        MPI_Initialized(&initialized);
-        owner = (initialized == 0);
-        if (owner)
-          {
-            int provided = 0;
-            MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided);
-          }
-      }
-
-      ~MpiSession()
-      {
-        if (owner)
-          MPI_Finalize();
-      }
-
-      MpiSession(const MpiSession &) = delete;
-      MpiSession &
-      operator=(const MpiSession &) = delete;
-
-    private:
-      bool owner;
-    };
-
-
-
     // Complete or not at all under its final name.
     void
     write_file(const std::filesystem::path &file, const std::string &text)
@@ -233,7 +199,9 @@ namespace ACF
     json["newton iterations max"]   = statistics.max_newton_iterations;
     json["equilibrium iterations"]  = statistics.equilibrium_iterations;
     json["factorisations"]          = {{"real", statistics.real_factorizations},
-                                       {"complex", statistics.complex_factorizations}};
+                                       {"complex", statistics.complex_factorizations},
+                                       {"single precision",
+                                        statistics.single_factorizations}};
     json["solves"]                  = {{"real", statistics.real_solves},
                                        {"complex", statistics.complex_solves},
                                        {"setup", statistics.setup_solves}};
@@ -269,6 +237,7 @@ namespace ACF
     json["factor memory [B]"]       = statistics.factor_bytes;
     json["joint column memory [B]"] = statistics.joint_column_bytes;
     json["factor backward error"]   = statistics.factor_backward_error;
+    json["factor contraction"]      = statistics.factor_contraction;
     json["threads"]                 = MultithreadInfo::n_threads();
     json["peak memory [B]"]         = peak_memory();
     for (const auto &[phase, seconds] : statistics.wall_times)
@@ -391,7 +360,6 @@ namespace ACF
     if (!quiet)
       describe_bodies(*system, stream);
 
-    const MpiSession mpi;
     std::ostringstream log;
     const SystemState state =
       start_state(*system, model, statistics, quiet ? log : stream);

@@ -12,8 +12,10 @@ namespace ACF
   JointedFactorization<Number>::JointedFactorization(
     const ReferenceBody &body,
     const BlockNodeMatrix &stiffness,
-    const Number shift)
-    : factor(body.operators(), stiffness, shift)
+    const Number shift,
+    const std::shared_ptr<const EliminationTree> &tree,
+    const FactorPrecision precision)
+    : factor(body.operators(), stiffness, shift, tree, precision)
     , functionals(body.functionals())
     , n_unknowns(body.operators().n_unknowns())
     , columns(dim * functionals.size() * n_unknowns)
@@ -63,8 +65,10 @@ namespace ACF
 
 
 
-  FactorizationCache::FactorizationCache(Statistics &statistics)
+  FactorizationCache::FactorizationCache(Statistics &statistics,
+                                         const FactorPrecision precision)
     : statistics(statistics)
+    , precision(precision)
   {}
 
 
@@ -87,10 +91,16 @@ namespace ACF
         const PhaseTimer timer(statistics, "factorisation");
         try
           {
+            auto &tree = trees[&body.reference()];
+            if (!tree)
+              tree = std::make_shared<const EliminationTree>(
+                body.operators().mass_matrix.graph());
             entry = std::make_unique<JointedFactorization<Number>>(
               body.reference(),
               is_replaced ? *own->second : body.operators().stiffness_matrix,
-              shift);
+              shift,
+              tree,
+              precision);
           }
         catch (const SimulationError &error)
           {
@@ -103,6 +113,9 @@ namespace ACF
           entry->factorization().statistics();
         statistics.setup_solves +=
           1 + dim * body.reference().functionals().size();
+        statistics.single_factorizations += (cost.single_precision ? 1 : 0);
+        statistics.factor_contraction =
+          std::max(statistics.factor_contraction, cost.contraction);
         statistics.factor_entries += cost.n_entries;
         statistics.factor_bytes += cost.n_bytes;
         statistics.joint_column_bytes += entry->column_bytes();

@@ -28,7 +28,7 @@ namespace ACF
     , tableau(tableau)
     , parameters(parameters)
     , statistics(statistics)
-    , cache(statistics)
+    , cache(statistics, parameters.factor_precision)
     , acceleration(system, 5)
     , marked(system.bodies().size())
   {
@@ -285,7 +285,8 @@ namespace ACF
         const Body &body = system.bodies()[b];
         if (!system.body_markers(b).empty() ||
             (body.strain_measure() == StrainMeasure::reduced &&
-             linearization != Linearization::exact))
+             linearization != Linearization::exact &&
+             parameters.factor_precision == FactorPrecision::double_precision))
           continue;
         Eigen::MatrixXd resultants = Eigen::MatrixXd::Zero(n_stages, dim);
         for (unsigned int i = 0; i < n_stages; ++i)

@@ -58,6 +58,19 @@ namespace ACF
       "diagonalised (one complex factorisation per conjugate pair), or for "
       "comparison real one-step matrices in the manner of the paper, which "
       "need more iterations. Units: none.");
+    prm.declare_entry(
+      "Factor precision",
+      "automatic",
+      Patterns::Selection("automatic|single|double"),
+      "Precision in which factorisations are kept: single precision has half "
+      "the bytes, which is what a solve costs, and the iteration corrects its "
+      "errors; automatic takes it where test solves show that it is accurate "
+      "enough, and double precision elsewhere. Units: none.");
+    prm.add_action("Factor precision", [this](const std::string &value) {
+      factor_precision = value == "single"   ? FactorPrecision::single_precision
+                         : value == "double" ? FactorPrecision::double_precision
+                                             : FactorPrecision::automatic;
+    });
     prm.add_action("Stage matrices", [this](const std::string &value) {
       one_step_matrices = (value == "one-step");
     });

@@ -87,7 +87,9 @@ namespace
     const FactorizationStatistics &statistics = factorization.statistics();
     EXPECT_LT(statistics.backward_error, 1e-13);
     EXPECT_GE(statistics.n_entries, n);
-    EXPECT_EQ(statistics.n_bytes, statistics.n_entries * sizeof(Number));
+    // vectors of eight rows are filled up with zeros
+    EXPECT_GE(statistics.n_bytes, statistics.n_entries * sizeof(Number));
+    EXPECT_LT(statistics.n_bytes, 1.3 * statistics.n_entries * sizeof(Number));
   }
 } // namespace
 

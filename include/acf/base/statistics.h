@@ -44,6 +44,9 @@ namespace ACF
     unsigned long real_factorizations    = 0;
     unsigned long complex_factorizations = 0;
 
+    /** Those that are kept in single precision. */
+    unsigned long single_factorizations = 0;
+
     /** Right-hand sides solved in the time loop. */
     unsigned long real_solves    = 0;
     unsigned long complex_solves = 0;
@@ -84,6 +87,10 @@ namespace ACF
 
     /** Largest backward error of a test solve after a factorisation. */
     double factor_backward_error = 0;
+
+    /** Largest contraction of corrections in single precision that was
+     * measured after a factorisation. */
+    double factor_contraction = 0;
 
     /** Wall time per phase, s. */
     std::map<std::string, double> wall_times;

@@ -32,7 +32,9 @@ namespace ACF
     /** @param stiffness A of the body, or a matrix in its place */
     JointedFactorization(const ReferenceBody &body,
                          const BlockNodeMatrix &stiffness,
-                         const Number shift);
+                         const Number shift,
+                         const std::shared_ptr<const EliminationTree> &tree,
+                         const FactorPrecision precision);
 
     ShiftedFactorization<Number> &
     factorization()
@@ -85,7 +87,9 @@ namespace ACF
   class FactorizationCache
   {
   public:
-    explicit FactorizationCache(Statistics &statistics);
+    explicit FactorizationCache(
+      Statistics &statistics,
+      const FactorPrecision precision = FactorPrecision::double_precision);
 
     JointedFactorization<double> &
     get(const Body &body, const double shift);
@@ -126,6 +130,12 @@ namespace ACF
     drop(Factors<Number> &factors, const Body &body);
 
     Statistics &statistics;
+    const FactorPrecision precision;
+
+    /** Of reference bodies. */
+    std::map<const ReferenceBody *, std::shared_ptr<const EliminationTree>>
+      trees;
+
     Factors<double> real_factors;
     Factors<std::complex<double>> complex_factors;
     std::map<const Body *, std::unique_ptr<const BlockNodeMatrix>> stiffness;

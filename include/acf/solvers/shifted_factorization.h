@@ -5,18 +5,31 @@
 #define acf_solvers_shifted_factorization_h
 
 #include <acf/mechanics/body_operators.h>
+#include <acf/solvers/multifrontal.h>
+#include <acf/solvers/supernodal_factor.h>
 
 #include <memory>
 
 namespace ACF
 {
+  /** How the numbers of a factor are kept. */
+  enum class FactorPrecision
+  {
+    /** Single where the test solves allow it, otherwise double. */
+    automatic,
+    single_precision,
+    double_precision
+  };
+
+
+
   /** What a factorisation cost. */
   struct FactorizationStatistics
   {
     /** Entries of the triangular factor, including the diagonal. */
     std::size_t n_entries = 0;
 
-    /** Bytes of the factor. */
+    /** Bytes that a solve reads twice. */
     std::size_t n_bytes = 0;
 
     /** s */
@@ -28,43 +41,66 @@ namespace ACF
      * solve after the factorisation.
      */
     double backward_error = 0;
+
+    /**
+     * Contraction $|(I - \tilde K^{-1} K) e| / |e|$ of corrections with the
+     * factor in single precision, if it was measured.
+     */
+    double contraction = 0;
+
+    bool single_precision = false;
   };
 
 
 
   /**
    * Factorisation $K = L D L^T$ of a body's shifted matrix
-   * $K = \sigma\, m \otimes I_3 + A$ in the body's frame, with MUMPS. For a
-   * complex shift K is complex symmetric (not Hermitian).
+   * $K = \sigma\, m \otimes I_3 + A$ in the body's frame. For a complex shift
+   * K is complex symmetric (not Hermitian).
    *
    * Contract: the constructor factorises; solve() may be called any number of
-   * times. No pivoting across the fill-reducing order, so the factor's size is
-   * known in advance: K is positive definite for $\sigma > 0$, and for a
-   * complex shift of a Radau method its numerical range excludes zero. A test
-   * solve checks the residual.
+   * times. No pivoting, so the factor's size is known in advance: K is positive
+   * definite for $\sigma > 0$, and for a complex shift of a Radau method its
+   * numerical range excludes zero. Test solves check the residual.
+   *
+   * The factor is computed in double precision. Kept in single precision it has
+   * half the bytes, and solves need half the time; their relative error is then
+   * about the contraction, which is good enough inside an iteration that
+   * corrects it.
    *
    * @tparam Number double or std::complex<double>
-   * @pre MPI is initialised (MUMPS of Debian is the parallel build)
    */
   template <typename Number>
   class ShiftedFactorization
   {
   public:
+    /** Contractions up to this one are good enough for single precision. */
+    static constexpr double largest_contraction = 1e-4;
+
     /**
-     * @param body provides mass and stiffness
+     * @param body provides the mass
+     * @param stiffness A of the body, or another matrix in its place
      * @param shift $\sigma$, 1/s^2
+     * @param tree of the body's graph
      * @throws SimulationError if the matrix is singular, memory runs out, or
      * the test solve has a backward error of more than 1e-10 (a matrix that is
-     * singular up to round-off, as for the shift zero, may pass)
+     * singular up to round-off, as for the shift zero, may pass); for single
+     * precision, if corrections do not contract
      */
-    ShiftedFactorization(const BodyOperators &body, const Number shift);
+    ShiftedFactorization(
+      const BodyOperators &body,
+      const BlockNodeMatrix &stiffness,
+      const Number shift,
+      const std::shared_ptr<const EliminationTree> &tree,
+      const FactorPrecision precision = FactorPrecision::double_precision);
 
-    /** With another matrix in the place of A. */
+    /** In double precision, with a new analysis of the graph. */
     ShiftedFactorization(const BodyOperators &body,
                          const BlockNodeMatrix &stiffness,
                          const Number shift);
 
-    ~ShiftedFactorization();
+    /** The same with the stiffness of the body. */
+    ShiftedFactorization(const BodyOperators &body, const Number shift);
 
     ShiftedFactorization(const ShiftedFactorization &) = delete;
     ShiftedFactorization &
@@ -76,7 +112,7 @@ namespace ACF
      * the other
      */
     void
-    solve(Number *vectors, const unsigned int n_vectors = 1);
+    solve(Number *vectors, const unsigned int n_vectors = 1) const;
 
     const FactorizationStatistics &
     statistics() const
@@ -85,15 +121,20 @@ namespace ACF
     }
 
   private:
-    class Mumps;
+    using Vector = std::vector<Number>;
 
+    /** Checks the backward error of a solve in double precision. */
     void
-    check(const BodyOperators &body,
-          const BlockNodeMatrix &stiffness,
-          const Number shift);
+    check(const ShiftedMatrix<Number> &matrix, const Vector &load);
 
-    unsigned int n_unknowns;
-    std::unique_ptr<Mumps> mumps;
+    /** Checks single precision. @return whether it is good enough */
+    bool
+    check_contraction(const ShiftedMatrix<Number> &matrix, const Vector &load);
+
+    /** One of the two. */
+    std::unique_ptr<SupernodalFactor<Number, double>> double_factor;
+    std::unique_ptr<SupernodalFactor<Number, float>> single_factor;
+
     FactorizationStatistics factor_statistics;
   };
 } // namespace ACF

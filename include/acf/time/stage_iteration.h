@@ -156,7 +156,8 @@ namespace ACF
      * Mean increments that the resultants of the forces ask for, for free
      * bodies whose linear system does not conserve momentum: internal forces
      * have no resultant, but those of frames that differ between nodes do, and
-     * those of inexact solutions. [body][stage], empty for other bodies.
+     * those of inexact solutions and of factors in single precision.
+     * [body][stage], empty for other bodies.
      */
     std::vector<std::vector<Vector3>>
     free_translations(const StageVector &forces, const double step_size) const;

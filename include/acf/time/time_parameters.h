@@ -4,7 +4,7 @@
 #ifndef acf_time_time_parameters_h
 #define acf_time_time_parameters_h
 
-#include <acf/base/types.h>
+#include <acf/solvers/shifted_factorization.h>
 
 namespace dealii
 {
@@ -29,6 +29,8 @@ namespace ACF
     unsigned int max_newton_iterations = 20;
     unsigned int max_krylov_iterations = 40;
     unsigned int max_halvings          = 8;
+
+    FactorPrecision factor_precision = FactorPrecision::automatic;
 
     /** Real one-step matrices as in the paper instead of the exact ones. */
     bool one_step_matrices = false;

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_solvers_supernodal_factor_h
+#define acf_solvers_supernodal_factor_h
+
+#include <acf/solvers/elimination_tree.h>
+
+#include <deal.II/base/aligned_vector.h>
+
+#include <complex>
+#include <memory>
+
+namespace ACF
+{
+  /**
+   * The factor $L D L^T$ of a symmetric matrix, laid out for solves, which are
+   * bound by the bandwidth of the memory: each solve reads L twice, in one
+   * stream from its first to its last byte and in one back, whatever the number
+   * of right-hand sides up to four.
+   *
+   * The columns of a supernode are cut into panels of a few columns, these into
+   * blocks of eight rows, with real and imaginary parts apart, so that the
+   * inner loops are products of vectors of eight numbers. Independent branches
+   * of the tree are solved in parallel; sums do not depend on which thread is
+   * faster, only on their number.
+   *
+   * @tparam Number double or std::complex<double>, of vectors
+   * @tparam Real double or float, in which L is kept and solves are done
+   */
+  template <typename Number, typename Real>
+  class SupernodalFactor
+  {
+  public:
+    /** @param n_threads that solve() uses */
+    SupernodalFactor(const std::shared_ptr<const EliminationTree> &tree,
+                     const unsigned int n_threads);
+
+    /** Stores the columns of a supernode, see SupernodeSink. */
+    void
+    store(const unsigned int supernode,
+          const Number *columns,
+          const std::size_t leading_dimension);
+
+    /**
+     * Replaces right-hand sides by solutions.
+     * @param vectors @p n_vectors vectors of all unknowns, ordered as the nodes
+     * of the graph, one after the other
+     */
+    void
+    solve(Number *vectors, const unsigned int n_vectors) const;
+
+    /** Bytes that a solve reads twice. */
+    std::size_t
+    n_bytes() const
+    {
+      return values.size() * sizeof(Real);
+    }
+
+  private:
+    /** Where the numbers of a supernode are, and how to loop over its rows. */
+    struct Block
+    {
+      /** In @p values. */
+      std::size_t offset;
+
+      unsigned int n_columns;
+
+      unsigned int n_rows;
+
+      /** Nodes of the rows below that are in its own branch of the tree. */
+      unsigned int n_own_rows;
+    };
+
+    /** Supernodes of the branches that threads solve, and those above. */
+    struct Partition
+    {
+      std::vector<std::vector<unsigned int>> branches;
+      std::vector<unsigned int> top;
+    };
+
+    void
+    divide(const unsigned int n_threads);
+
+    template <unsigned int n_vectors>
+    class Solution;
+
+    template <unsigned int n_vectors>
+    void
+    solve_together(Number *vectors) const;
+
+    std::shared_ptr<const EliminationTree> tree;
+    std::vector<Block> blocks;
+    Partition partition;
+    unsigned int longest_block = 0;
+    dealii::AlignedVector<Real> values;
+  };
+} // namespace ACF
+
+#endif

@@ -1,0 +1,317 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/exceptions.h>
+#include <acf/solvers/multifrontal.h>
+
+#include <deal.II/lac/lapack_templates.h>
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+
+namespace ACF
+{
+  namespace
+  {
+    // The dense symmetric matrix of a supernode's columns and rows, of which
+    // the columns are eliminated. Only the lower triangle is used.
+    template <typename Number>
+    class Front
+    {
+    public:
+      void
+      reinit(const std::size_t size)
+      {
+        n = size;
+        if (entries.size() < n * n)
+          entries.resize(n * n);
+        for (std::size_t j = 0; j < n; ++j)
+          std::fill(column(j) + j, column(j) + n, Number());
+      }
+
+      Number *
+      column(const std::size_t j)
+      {
+        return entries.data() + j * n;
+      }
+
+      const Number *
+      column(const std::size_t j) const
+      {
+        return entries.data() + j * n;
+      }
+
+      std::size_t
+      size() const
+      {
+        return n;
+      }
+
+      /** Eliminates the first columns. */
+      void
+      eliminate(const std::size_t n_columns)
+      {
+        eliminate(0, n_columns);
+        update(0, n_columns, n_columns, n);
+      }
+
+    private:
+      // Columns from begin to end, all rows: halves first, so that most of the
+      // work is products of matrices.
+      void
+      eliminate(const std::size_t begin, const std::size_t end)
+      {
+        if (end - begin <= narrow)
+          {
+            eliminate_narrow(begin, end);
+            return;
+          }
+        const std::size_t middle = begin + (end - begin) / 2;
+        eliminate(begin, middle);
+        update(begin, middle, middle, end);
+        eliminate(middle, end);
+      }
+
+      void
+      eliminate_narrow(const std::size_t begin, const std::size_t end)
+      {
+        for (std::size_t j = begin; j < end; ++j)
+          {
+            Number *const L = column(j);
+            if (!(std::abs(L[j]) > 0) || !std::isfinite(std::abs(L[j])))
+              throw SimulationError(
+                "The shifted matrix of a body is singular.");
+            const Number inverse = 1. / L[j];
+            for (std::size_t k = j + 1; k < end; ++k)
+              {
+                const Number factor = L[k] * inverse;
+                Number *const C     = column(k);
+                for (std::size_t i = k; i < n; ++i)
+                  C[i] -= factor * L[i];
+              }
+            for (std::size_t i = j + 1; i < n; ++i)
+              L[i] *= inverse;
+          }
+      }
+
+      // C <- C - L D L^T with the columns from begin to end of L, for the
+      // columns of C from first to last
+      void
+      update(const std::size_t begin,
+             const std::size_t end,
+             const std::size_t first,
+             const std::size_t last)
+      {
+        const types::blas_int ld = n, k = end - begin;
+        const Number minus_one = -1, one = 1;
+        for (std::size_t j = first; j < last; j += update_width)
+          {
+            const types::blas_int width = std::min(update_width, last - j);
+            const types::blas_int m     = n - j;
+            scaled.resize(width * k);
+            for (types::blas_int c = 0; c < k; ++c)
+              {
+                const Number D        = column(begin + c)[begin + c];
+                const Number *const L = column(begin + c) + j;
+                for (types::blas_int i = 0; i < width; ++i)
+                  scaled[c * width + i] = D * L[i];
+              }
+            gemm("N",
+                 "T",
+                 &m,
+                 &width,
+                 &k,
+                 &minus_one,
+                 column(begin) + j,
+                 &ld,
+                 scaled.data(),
+                 &width,
+                 &one,
+                 column(j) + j,
+                 &ld);
+          }
+      }
+
+      static constexpr std::size_t narrow       = 12;
+      static constexpr std::size_t update_width = 96;
+
+      std::size_t n = 0;
+      std::vector<Number> entries;
+      std::vector<Number> scaled;
+    };
+
+
+
+    // Factorises the supernodes of a tree one after the other.
+    template <typename Number>
+    class Multifrontal
+    {
+    public:
+      Multifrontal(const EliminationTree &tree,
+                   const ShiftedMatrix<Number> &matrix,
+                   const SupernodeSink<Number> &sink)
+        : tree(tree)
+        , matrix(matrix)
+        , sink(sink)
+        , children(tree.supernodes().size())
+      {
+        for (unsigned int s = 0; s < tree.supernodes().size(); ++s)
+          if (tree.supernodes()[s].parent != EliminationTree::none)
+            children[tree.supernodes()[s].parent].push_back(s);
+      }
+
+      /** With the children done before. */
+      void
+      factorize(const unsigned int s, Front<Number> &front)
+      {
+        const EliminationTree::Supernode &supernode = tree.supernodes()[s];
+        const std::size_t k                         = dim * supernode.n_columns;
+        const std::size_t m = dim * supernode.rows.size();
+        front.reinit(k + m);
+        add_matrix(supernode, front);
+        // children were pushed one after the other, the last one is on top
+        for (auto child = children[s].rbegin(); child != children[s].rend();
+             ++child)
+          {
+            const std::size_t size =
+              dim * tree.supernodes()[*child].rows.size();
+            stack_size -= size * size;
+            add_update(*child, stack.data() + stack_size, supernode, front);
+          }
+        front.eliminate(k);
+        sink(s, front.column(0), front.size());
+        if (stack.size() < stack_size + m * m)
+          stack.resize(std::max(stack_size + m * m, 3 * stack.size() / 2));
+        for (std::size_t j = 0; j < m; ++j)
+          std::copy_n(front.column(k + j) + k + j,
+                      m - j,
+                      stack.data() + stack_size + j * m + j);
+        stack_size += m * m;
+      }
+
+    private:
+      // Rows of the front where the first unknowns of these places are.
+      std::vector<std::size_t>
+      local_rows(const EliminationTree::Supernode &supernode,
+                 const std::vector<unsigned int> &places) const
+      {
+        std::vector<std::size_t> rows;
+        auto position          = supernode.rows.begin();
+        const unsigned int end = supernode.first + supernode.n_columns;
+        for (const unsigned int place : places)
+          if (place < end)
+            rows.push_back(dim * (place - supernode.first));
+          else
+            {
+              position =
+                std::lower_bound(position, supernode.rows.end(), place);
+              rows.push_back(dim * (supernode.n_columns +
+                                    (position - supernode.rows.begin())));
+            }
+        return rows;
+      }
+
+      void
+      add_matrix(const EliminationTree::Supernode &supernode,
+                 Front<Number> &front) const
+      {
+        const NodeGraph &graph = matrix.stiffness.graph();
+        std::vector<std::pair<unsigned int, std::size_t>> entries;
+        std::vector<unsigned int> places;
+        for (unsigned int c = 0; c < supernode.n_columns; ++c)
+          {
+            const unsigned int place = supernode.first + c;
+            const unsigned int node  = tree.node()[place];
+            entries.clear();
+            places.clear();
+            for (std::size_t e = graph.row_start[node];
+                 e < graph.row_start[node + 1];
+                 ++e)
+              if (tree.place()[graph.column[e]] >= place)
+                entries.emplace_back(tree.place()[graph.column[e]], e);
+            std::sort(entries.begin(), entries.end());
+            for (const auto &entry : entries)
+              places.push_back(entry.first);
+            const std::vector<std::size_t> rows = local_rows(supernode, places);
+            for (unsigned int q = 0; q < entries.size(); ++q)
+              add_block(entries[q].second, rows[q], dim * c, front);
+          }
+      }
+
+      // The transposed block of an entry of row a is that of column a.
+      void
+      add_block(const std::size_t e,
+                const std::size_t row,
+                const std::size_t column,
+                Front<Number> &front) const
+      {
+        const double *const block = matrix.stiffness.block(e);
+        for (unsigned int j = 0; j < dim; ++j)
+          for (unsigned int i = 0; i < dim; ++i)
+            front.column(column + j)[row + i] += block[dim * j + i];
+        const Number mass = matrix.shift * matrix.mass.value(e);
+        for (unsigned int j = 0; j < dim; ++j)
+          front.column(column + j)[row + j] += mass;
+      }
+
+      void
+      add_update(const unsigned int child,
+                 const Number *const update,
+                 const EliminationTree::Supernode &supernode,
+                 Front<Number> &front) const
+      {
+        const std::vector<std::size_t> rows =
+          local_rows(supernode, tree.supernodes()[child].rows);
+        const std::size_t m = dim * rows.size();
+        for (unsigned int q = 0; q < rows.size(); ++q)
+          for (unsigned int j = 0; j < dim; ++j)
+            {
+              Number *const target       = front.column(rows[q] + j);
+              const Number *const source = update + (dim * q + j) * m;
+              for (unsigned int i = j; i < dim; ++i)
+                target[rows[q] + i] += source[dim * q + i];
+              for (unsigned int p = q + 1; p < rows.size(); ++p)
+                for (unsigned int i = 0; i < dim; ++i)
+                  target[rows[p] + i] += source[dim * p + i];
+            }
+      }
+
+      const EliminationTree &tree;
+      const ShiftedMatrix<Number> &matrix;
+      const SupernodeSink<Number> &sink;
+
+      std::vector<std::vector<unsigned int>> children;
+
+      /** What is left of the fronts that their parents have not taken yet. */
+      std::vector<Number> stack;
+      std::size_t stack_size = 0;
+    };
+  } // namespace
+
+
+
+  template <typename Number>
+  void
+  factorize_multifrontal(const EliminationTree &tree,
+                         const ShiftedMatrix<Number> &matrix,
+                         const SupernodeSink<Number> &sink)
+  {
+    Multifrontal<Number> multifrontal(tree, matrix, sink);
+    Front<Number> front;
+    for (unsigned int s = 0; s < tree.supernodes().size(); ++s)
+      multifrontal.factorize(s, front);
+  }
+
+
+
+  template void
+  factorize_multifrontal(const EliminationTree &,
+                         const ShiftedMatrix<double> &,
+                         const SupernodeSink<double> &);
+
+  template void
+  factorize_multifrontal(const EliminationTree &,
+                         const ShiftedMatrix<std::complex<double>> &,
+                         const SupernodeSink<std::complex<double>> &);
+} // namespace ACF

@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_solvers_supernodal_kernels_h
+#define acf_solvers_supernodal_kernels_h
+
+#include <acf/solvers/elimination_tree.h>
+
+/*
+ * The loops of SupernodalFactor over the numbers of one supernode, for one or
+ * more right-hand sides at once. Numbers are kept as n_planes = 1 plane (real)
+ * or 2 planes (real and imaginary parts).
+ *
+ * A supernode is stored as panels of at most panel_width columns. A panel with
+ * the columns j, ..., j + w - 1 begins with its triangle: 1 / D and then the
+ * columns of L below the diagonal, one plane after the other; padded to full
+ * vectors. Then follow its rows from the vector that holds row j + w on:
+ * [vector of rows][column][plane][row of the vector], with zeros above.
+ */
+
+// Inlined into functions for several instruction sets, see
+// supernodal_factor.cc; so without lambdas.
+#define ACF_INLINE inline __attribute__((always_inline))
+
+namespace ACF
+{
+  namespace Kernels
+  {
+    /** Rows of a vector. */
+    constexpr unsigned int lanes = 8;
+
+    /** Two nodes. */
+    constexpr unsigned int panel_width = 6;
+
+    template <typename Real>
+    struct Vectors;
+
+    template <>
+    struct Vectors<double>
+    {
+      typedef double type __attribute__((vector_size(lanes * sizeof(double))));
+    };
+
+    template <>
+    struct Vectors<float>
+    {
+      typedef float type __attribute__((vector_size(lanes * sizeof(float))));
+    };
+
+    constexpr std::size_t
+    round_up(const std::size_t n)
+    {
+      return (n + lanes - 1) / lanes * lanes;
+    }
+
+    constexpr std::size_t
+    triangle_size(const unsigned int width, const unsigned int n_planes)
+    {
+      return round_up(width * (width + 1) / 2 * n_planes);
+    }
+
+    /** First row of the vectors of a panel. */
+    constexpr unsigned int
+    first_vector_row(const unsigned int first_column, const unsigned int width)
+    {
+      return (first_column + width) / lanes * lanes;
+    }
+
+    constexpr std::size_t
+    panel_size(const unsigned int first_column,
+               const unsigned int width,
+               const unsigned int n_rows,
+               const unsigned int n_planes)
+    {
+      return triangle_size(width, n_planes) +
+             (round_up(n_rows) - first_vector_row(first_column, width)) *
+               width * n_planes;
+    }
+
+    /** A supernode and its numbers. Rows and columns are unknowns. */
+    template <typename Real>
+    struct SupernodeView
+    {
+      const Real *values;
+      unsigned int n_columns;
+      unsigned int n_rows;
+      std::size_t n_values;
+    };
+
+    /** a += b c or a -= b c, for numbers of n_planes planes. */
+    template <int sign,
+              unsigned int n_planes,
+              typename A,
+              typename B,
+              typename C>
+    ACF_INLINE void
+    multiply_add(A *a, const B *b, const C *c)
+    {
+      if constexpr (n_planes == 1)
+        {
+          if constexpr (sign > 0)
+            a[0] += b[0] * c[0];
+          else
+            a[0] -= b[0] * c[0];
+        }
+      else if constexpr (sign > 0)
+        {
+          a[0] += b[0] * c[0];
+          a[0] -= b[1] * c[1];
+          a[1] += b[0] * c[1];
+          a[1] += b[1] * c[0];
+        }
+      else
+        {
+          a[0] -= b[0] * c[0];
+          a[0] += b[1] * c[1];
+          a[1] -= b[0] * c[1];
+          a[1] -= b[1] * c[0];
+        }
+    }
+
+
+
+    /**
+     * The right-hand sides of a supernode: [vector][plane][row], rows padded.
+     */
+    template <typename Real>
+    struct Work
+    {
+      Real *rows;
+      std::size_t n_padded;
+
+      template <unsigned int n_planes>
+      ACF_INLINE Real *
+      plane(const unsigned int v, const unsigned int p) const
+      {
+        return rows + (v * n_planes + p) * n_padded;
+      }
+    };
+
+
+
+    // t <- L_jj^-1 t for the columns of a panel, or with the transpose
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int width,
+              bool transposed>
+    ACF_INLINE void
+    solve_triangle(const Real *triangle,
+                   const unsigned int v,
+                   const unsigned int j,
+                   const Work<Real> &t)
+    {
+      Real x[width][n_planes];
+      for (unsigned int c = 0; c < width; ++c)
+        for (unsigned int p = 0; p < n_planes; ++p)
+          x[c][p] = t.template plane<n_planes>(v, p)[j + c];
+      const Real *const L = triangle + width * n_planes;
+      if constexpr (transposed)
+        {
+          for (unsigned int c = width; c-- > 0;)
+            for (unsigned int r = c + 1; r < width; ++r)
+              multiply_add<-1, n_planes>(
+                x[c],
+                L + (c * width - c * (c + 1) / 2 + r - c - 1) * n_planes,
+                x[r]);
+        }
+      else
+        {
+          for (unsigned int c = 0; c < width; ++c)
+            for (unsigned int r = c + 1; r < width; ++r)
+              multiply_add<-1, n_planes>(
+                x[r],
+                L + (c * width - c * (c + 1) / 2 + r - c - 1) * n_planes,
+                x[c]);
+        }
+      for (unsigned int c = 0; c < width; ++c)
+        for (unsigned int p = 0; p < n_planes; ++p)
+          t.template plane<n_planes>(v, p)[j + c] = x[c][p];
+    }
+
+
+
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int n_vectors,
+              unsigned int width>
+    ACF_INLINE void
+    forward_panel(const Real *values,
+                  const unsigned int j,
+                  const unsigned int n_rows,
+                  const Work<Real> &t)
+    {
+      using Vector = typename Vectors<Real>::type;
+
+      Real x[n_vectors][width][n_planes];
+      for (unsigned int v = 0; v < n_vectors; ++v)
+        {
+          solve_triangle<Real, n_planes, width, false>(values, v, j, t);
+          for (unsigned int c = 0; c < width; ++c)
+            for (unsigned int p = 0; p < n_planes; ++p)
+              x[v][c][p] = t.template plane<n_planes>(v, p)[j + c];
+        }
+      const Vector *L = reinterpret_cast<const Vector *>(
+        values + triangle_size(width, n_planes));
+      for (unsigned int row = first_vector_row(j, width); row < n_rows;
+           row += lanes, L += width * n_planes)
+        for (unsigned int v = 0; v < n_vectors; ++v)
+          {
+            Vector sum[n_planes];
+            for (unsigned int p = 0; p < n_planes; ++p)
+              sum[p] = *reinterpret_cast<const Vector *>(
+                t.template plane<n_planes>(v, p) + row);
+            for (unsigned int c = 0; c < width; ++c)
+              multiply_add<-1, n_planes>(sum, L + c * n_planes, x[v][c]);
+            for (unsigned int p = 0; p < n_planes; ++p)
+              *reinterpret_cast<Vector *>(t.template plane<n_planes>(v, p) +
+                                          row) = sum[p];
+          }
+    }
+
+
+
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int n_vectors,
+              unsigned int width>
+    ACF_INLINE void
+    backward_panel(const Real *values,
+                   const unsigned int j,
+                   const unsigned int n_rows,
+                   const Work<Real> &t)
+    {
+      using Vector = typename Vectors<Real>::type;
+
+      const Vector *const L = reinterpret_cast<const Vector *>(
+        values + triangle_size(width, n_planes));
+      const unsigned int first = first_vector_row(j, width);
+      for (unsigned int v = 0; v < n_vectors; ++v)
+        {
+          Vector sum[width][n_planes] = {};
+          const Vector *entry         = L;
+          for (unsigned int row = first; row < n_rows;
+               row += lanes, entry += width * n_planes)
+            {
+              Vector x[n_planes];
+              for (unsigned int p = 0; p < n_planes; ++p)
+                x[p] = *reinterpret_cast<const Vector *>(
+                  t.template plane<n_planes>(v, p) + row);
+              for (unsigned int c = 0; c < width; ++c)
+                multiply_add<1, n_planes>(sum[c], entry + c * n_planes, x);
+            }
+          for (unsigned int c = 0; c < width; ++c)
+            {
+              Real x[n_planes], total[n_planes];
+              for (unsigned int p = 0; p < n_planes; ++p)
+                {
+                  x[p]     = t.template plane<n_planes>(v, p)[j + c];
+                  total[p] = 0;
+                  for (unsigned int i = 0; i < lanes; ++i)
+                    total[p] -= sum[c][p][i];
+                }
+              // 1 / D
+              multiply_add<1, n_planes>(total, values + c * n_planes, x);
+              for (unsigned int p = 0; p < n_planes; ++p)
+                t.template plane<n_planes>(v, p)[j + c] = total[p];
+            }
+          solve_triangle<Real, n_planes, width, true>(values, v, j, t);
+        }
+    }
+
+
+
+    /** t <- L^-1 t for the columns of a supernode, and t -= L t below. */
+    template <typename Real, unsigned int n_planes, unsigned int n_vectors>
+    ACF_INLINE void
+    forward(const SupernodeView<Real> &s, const Work<Real> &t)
+    {
+      const Real *values = s.values;
+      unsigned int j     = 0;
+      for (; j + panel_width <= s.n_columns; j += panel_width)
+        {
+          forward_panel<Real, n_planes, n_vectors, panel_width>(values,
+                                                                j,
+                                                                s.n_rows,
+                                                                t);
+          values += panel_size(j, panel_width, s.n_rows, n_planes);
+        }
+      if (j < s.n_columns)
+        forward_panel<Real, n_planes, n_vectors, panel_width / 2>(values,
+                                                                  j,
+                                                                  s.n_rows,
+                                                                  t);
+    }
+
+
+
+    /** t <- L^-T (D^-1 t - L^T t) with the rows below. */
+    template <typename Real, unsigned int n_planes, unsigned int n_vectors>
+    ACF_INLINE void
+    backward(const SupernodeView<Real> &s, const Work<Real> &t)
+    {
+      const Real *values = s.values + s.n_values;
+      unsigned int j     = s.n_columns;
+      if (j % panel_width != 0)
+        {
+          j -= panel_width / 2;
+          values -= panel_size(j, panel_width / 2, s.n_rows, n_planes);
+          backward_panel<Real, n_planes, n_vectors, panel_width / 2>(values,
+                                                                     j,
+                                                                     s.n_rows,
+                                                                     t);
+        }
+      while (j > 0)
+        {
+          j -= panel_width;
+          values -= panel_size(j, panel_width, s.n_rows, n_planes);
+          backward_panel<Real, n_planes, n_vectors, panel_width>(values,
+                                                                 j,
+                                                                 s.n_rows,
+                                                                 t);
+        }
+    }
+  } // namespace Kernels
+} // namespace ACF
+
+#endif
