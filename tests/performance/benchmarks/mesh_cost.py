@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: LGPL-2.1-or-later
+# Copyright (C) 2026 The acf-dealii authors
+"""Cost against the number of unknowns, of a slender and of a bulky body."""
+
+from common import Failed, growth_exponent
+
+STEP_SIZE = 1e-3  # s
+
+# Counts of hexahedra, each cut into 24 tetrahedra: the blade of the pendulum
+# (one cell across) and a cube.
+SLENDER = ["1, 20, 1", "1, 40, 2", "1, 80, 4", "1, 152, 8", "1, 272, 14"]
+BULKY = ["2, 2, 2", "4, 4, 4", "6, 6, 6", "8, 8, 8", "10, 10, 10"]
+
+
+def bodies(quick):
+    yield ("slender", "prm/pendulum/pendulum.prm", "pendulum",
+           ["1, 4, 1", "1, 8, 1"] if quick else SLENDER)
+    yield ("bulky", "tests/performance/benchmarks/cube.prm", "cube",
+           ["1, 1, 1", "2, 2, 2"] if quick else BULKY)
+
+
+def run(bench):
+    n_steps = 3 if bench.quick else 20
+    rows, exponents = [], []
+    for kind, model, body, meshes in bodies(bench.quick):
+        mine = []
+        for cells in meshes:
+            settings = {f"Bodies/{body}/Element": "tetrahedron", f"Bodies/{body}/Cells": cells,
+                        "Time integration/Step size": STEP_SIZE,
+                        "Time integration/End time": n_steps * STEP_SIZE,
+                        "Output/VTU interval": 0, "Validity/Action": "ignore"}
+            try:
+                result = bench.simulate(f"mesh, {kind}, {cells}", model, settings)
+            except Failed as error:
+                bench.say(f"{kind}, {cells}: {error}")
+                break
+            steps = result.count("steps")
+            mine.append({
+                "body": kind, "cells": cells, "unknowns": result.unknowns(),
+                "assembly [s]": result.seconds("assembly"),
+                "factorisation [s]": result.seconds("factorisation"),
+                "step [s]": result.steps / steps,
+                "solves [s per step]": result.seconds("solves") / steps,
+                "solves per step": result.solves() / steps,
+                "factor entries": result.count("factor entries"),
+                "factor memory [B]": result.count("factor memory [B]"),
+                "peak memory [B]": result.count("peak memory [B]"),
+                "repetitions": result.repetitions})
+            bench.say(f"{kind}, {mine[-1]['unknowns']} unknowns: factorisation "
+                      f"{mine[-1]['factorisation [s]']:.3g} s, step {mine[-1]['step [s]']:.3g} s")
+        rows += mine
+        for column in ("assembly [s]", "factorisation [s]", "step [s]", "solves [s per step]",
+                       "factor memory [B]", "peak memory [B]"):
+            for which, some in (("all", mine), ("last three", mine[-3:])):
+                if len(some) > 1:
+                    exponents.append({
+                        "body": kind, "meshes": which, "quantity": column,
+                        "growth exponent": growth_exponent([row["unknowns"] for row in some],
+                                                           [row[column] for row in some])})
+        bench.write_table("mesh_cost.csv", rows)
+        bench.write_table("mesh_cost_exponents.csv", exponents)
