@@ -11,7 +11,6 @@ import pathlib
 import shutil
 import statistics
 import subprocess
-import sys
 
 TOP = pathlib.Path(__file__).resolve().parents[3]
 
@@ -165,7 +164,7 @@ def distance(run, reference, columns):
     for k, time in enumerate(run["time [s]"]):
         where = times.get(f"{time:.9g}")
         if where is None:
-            sys.exit(f"The reference has no time {time}.")
+            raise Failed(f"the reference has no time {time}")
         largest = max(largest, math.dist([run[c][k] for c in columns],
                                          [reference[c][where] for c in columns]))
     return largest

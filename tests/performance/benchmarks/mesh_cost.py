@@ -9,7 +9,7 @@ STEP_SIZE = 1e-3  # s
 # Counts of hexahedra, each cut into 24 tetrahedra: the blade of the pendulum
 # (one cell across) and a cube.
 SLENDER = ["1, 20, 1", "1, 40, 2", "1, 80, 4", "1, 152, 8", "1, 272, 14"]
-BULKY = ["2, 2, 2", "4, 4, 4", "6, 6, 6", "8, 8, 8", "10, 10, 10"]
+BULKY = ["2, 2, 2", "4, 4, 4", "6, 6, 6", "9, 9, 9", "12, 12, 12"]
 
 
 def bodies(quick):
