@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/parallel.h>
 #include <acf/mechanics/reduced_strain.h>
 
 namespace ACF
@@ -151,6 +152,31 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // From k = A q to the force, in place. @return the energy
+    double
+    force_of_products(const BodyOperators &body,
+                      const BodyRotation &frame,
+                      const NodalVector &q,
+                      NodalVector &force)
+    {
+      double energy = 0;
+      Vector3 c;
+      for (unsigned int a = 0; a < body.n_nodes; ++a)
+        {
+          const Vector3 q_a = node_value(q, a);
+          const Vector3 k_a = node_value(force, a);
+          energy += 0.5 * (q_a * k_a);
+          c += cross_product_3d(q_a, k_a);
+        }
+      balance_moment(body, frame, c, force);
+      return energy;
+    }
+  } // namespace
+
+
+
   std::optional<double>
   reduced_strain_force(const BodyOperators &body,
                        const RotationMeasure measure,
@@ -167,18 +193,34 @@ namespace ACF
     co_rotated_displacement(body, positions, frame->rotation, q);
     body.stiffness_matrix.vmult(force, q);
 
-    double energy = 0;
-    Vector3 c;
-    for (unsigned int a = 0; a < body.n_nodes; ++a)
-      {
-        const Vector3 q_a = node_value(q, a);
-        const Vector3 k_a = node_value(force, a);
-        energy += 0.5 * (q_a * k_a);
-        c += cross_product_3d(q_a, k_a);
-      }
+    return force_of_products(body, *frame, q, force);
+  }
 
-    balance_moment(body, *frame, c, force);
-    return energy;
+
+
+  bool
+  reduced_strain_forces(const BodyOperators &body,
+                        const RotationMeasure measure,
+                        const std::vector<NodalVector> &positions,
+                        std::vector<NodalVector> &forces)
+  {
+    const unsigned int n = positions.size();
+    std::vector<std::optional<BodyRotation>> frames(n);
+    std::vector<NodalVector> q(positions);
+    run_tasks(n, [&](const unsigned int i) {
+      frames[i] =
+        body_rotation(mean_deformation_gradient(body, positions[i]), measure);
+      if (frames[i])
+        co_rotated_displacement(body, positions[i], frames[i]->rotation, q[i]);
+    });
+    for (const auto &frame : frames)
+      if (!frame)
+        return false;
+    body.stiffness_matrix.vmult(forces, q);
+    run_tasks(n, [&](const unsigned int i) {
+      force_of_products(body, *frames[i], q[i], forces[i]);
+    });
+    return true;
   }
 
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
+#include <acf/base/parallel.h>
 #include <acf/solvers/coupled_system.h>
 
 #include <algorithm>
@@ -275,14 +276,14 @@ namespace ACF
   CoupledSystem<Number>::solve_bodies()
   {
     const PhaseTimer timer(statistics, "solves");
-    for (const auto &group : groups)
-      {
-        factors[group[0]]->factorization().solve(body(group[0]), group.size());
-        for (const unsigned int b : group)
-          if (scales[b] != Number(1))
-            for (std::size_t k = 0; k < factors[b]->size(); ++k)
-              body(b)[k] /= scales[b];
-      }
+    run_tasks(groups.size(), [&](const unsigned int k) {
+      const auto &group = groups[k];
+      factors[group[0]]->factorization().solve(body(group[0]), group.size());
+      for (const unsigned int b : group)
+        if (scales[b] != Number(1))
+          for (std::size_t i = 0; i < factors[b]->size(); ++i)
+            body(b)[i] /= scales[b];
+    });
   }
 
 

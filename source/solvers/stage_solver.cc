@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/parallel.h>
 #include <acf/solvers/stage_solver.h>
 
 #include <deal.II/base/numbers.h>
@@ -195,9 +196,10 @@ namespace ACF
     Vector mu;
     if (stages != nullptr)
       {
-        for (unsigned int b = 0; b < n_bodies; ++b)
+        run_tasks(n_bodies, [&](const unsigned int b) {
           combine_in_body_frame(
             *stages, b, from_stages, rotations, coupled_system.body(b));
+        });
         mu = coupled_system.solve(g);
         solve_counter<Number>(statistics) += n_bodies;
       }
@@ -206,12 +208,13 @@ namespace ACF
 
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        for (unsigned int b = 0; b < n_bodies; ++b)
+        run_tasks(n_bodies, [&](const unsigned int b) {
           add_in_world_frame(coupled_system.body(b),
                              to_stages[i],
                              stages != nullptr ? rotations.stages[i][b]
                                                : rotations.mean[b],
                              stage_increments[i][b]);
+        });
         for (unsigned int r = 0; r < mu.size(); ++r)
           constraint_increments[i](r) += std::real(to_stages[i] * mu(r));
       }

@@ -478,14 +478,30 @@ namespace ACF
   SupernodalFactor<Number, Real>::solve(Number *vectors,
                                         const unsigned int n_vectors) const
   {
-    const std::size_t n = tree->n_unknowns();
-    unsigned int v      = 0;
-    for (; v + 4 <= n_vectors; v += 4)
-      solve_together<4>(vectors + v * n);
-    for (; v + 2 <= n_vectors; v += 2)
-      solve_together<2>(vectors + v * n);
-    if (v < n_vectors)
-      solve_together<1>(vectors + v * n);
+    // four at a time; small factors have no branches for threads
+    constexpr unsigned int largest = 4;
+    const std::size_t n            = tree->n_unknowns();
+    const auto solve_some          = [&](const unsigned int block) {
+      const unsigned int first = largest * block;
+      Number *const some       = vectors + first * n;
+      switch (std::min(largest, n_vectors - first))
+        {
+          case 4:
+            return solve_together<4>(some);
+          case 3:
+            return solve_together<3>(some);
+          case 2:
+            return solve_together<2>(some);
+          default:
+            return solve_together<1>(some);
+        }
+    };
+    const unsigned int n_blocks = (n_vectors + largest - 1) / largest;
+    if (partition.branches.size() == 1)
+      run_tasks(n_blocks, solve_some);
+    else
+      for (unsigned int block = 0; block < n_blocks; ++block)
+        solve_some(block);
   }
 
 

@@ -3,6 +3,7 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
+#include <acf/base/parallel.h>
 #include <acf/time/stage_equations.h>
 
 namespace ACF
@@ -103,22 +104,37 @@ namespace ACF
 
 
   bool
-  StageEquations::body_residual(const unsigned int stage,
-                                const unsigned int b,
-                                const NodalVector &position,
-                                const NodalVector &velocity,
-                                const NodalVector &acceleration,
-                                NodalVector &residual) const
+  StageEquations::body_residual(const unsigned int b,
+                                BodyStages &stages,
+                                StageVector &residual) const
   {
-    const Body &body = system.bodies()[b];
-    NodalVector work(position.size());
-    ++statistics.force_evaluations;
-    if (!internal_force(body, position, velocity, residual, work))
+    const Body &body            = system.bodies()[b];
+    const unsigned int n_stages = tableau.n_stages();
+    const double inverse_square = 1 / (tau * tau);
+    const NodalVector zero(body.operators().n_unknowns());
+    stages.positions.resize(n_stages);
+    stages.velocities.resize(n_stages);
+    stages.accelerations.assign(n_stages, zero);
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
+        stages.positions[i] = position(i, b);
+        if (system.needs_velocities())
+          stages.velocities[i] = velocity(i, b);
+        for (unsigned int j = 0; j < n_stages; ++j)
+          stages.accelerations[i].add(inverse_square * A_inverse_squared(i, j),
+                                      increments[j][b]);
+      }
+
+    std::vector<NodalVector> forces(n_stages, zero), inertia(n_stages, zero);
+    if (!internal_forces(body, stages.positions, stages.velocities, forces))
       return false;
-    body.operators().mass_matrix.vmult(work, acceleration);
-    residual += work;
-    residual *= -1;
-    system.add_loads(b, time(stage), position, residual);
+    body.operators().mass_matrix.vmult(inertia, stages.accelerations);
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
+        forces[i].sadd(-1., -1., inertia[i]);
+        system.add_loads(b, time(i), stages.positions[i], forces[i]);
+        residual[i][b].swap(forces[i]);
+      }
     return true;
   }
 
@@ -129,37 +145,41 @@ namespace ACF
                            StageConstraints &constraints,
                            std::string &failure) const
   {
-    const double inverse_square = 1 / (tau * tau);
+    const unsigned int n_stages = tableau.n_stages();
     const unsigned int n_bodies = system.bodies().size();
-    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-      {
-        const SystemVector x = positions(i);
-        SystemVector v(n_bodies), accelerations(n_bodies);
-        if (system.needs_velocities())
-          v = velocities(i);
+    std::vector<BodyStages> bodies(n_bodies);
+    std::vector<char> is_inverted(n_bodies, false);
+    run_tasks(n_bodies, [&](const unsigned int b) {
+      is_inverted[b] = !body_residual(b, bodies[b], forces);
+    });
+    statistics.force_evaluations += n_bodies * n_stages;
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      if (is_inverted[b])
+        {
+          failure = "body '" + system.bodies()[b].name() +
+                    "' is turned inside out (the determinant of a deformation "
+                    "gradient is not positive)";
+          return false;
+        }
+    if (system.n_marker_values() == 0)
+      return true;
+
+    const auto marker_values =
+      [&](std::vector<NodalVector> BodyStages::*const part,
+          const unsigned int stage) {
+        SystemVector values(n_bodies);
         for (unsigned int b = 0; b < n_bodies; ++b)
-          {
-            accelerations[b].reinit(x[b].size());
-            for (unsigned int j = 0; j < tableau.n_stages(); ++j)
-              accelerations[b].add(inverse_square * A_inverse_squared(i, j),
-                                   increments[j][b]);
-            if (!body_residual(
-                  i, b, x[b], v[b], accelerations[b], forces[i][b]))
-              {
-                failure = "body '" + system.bodies()[b].name() +
-                          "' is turned inside out (the determinant of a "
-                          "deformation gradient is not positive)";
-                return false;
-              }
-          }
-        if (system.n_marker_values() == 0)
-          continue;
-        const Eigen::VectorXd s = system.marker_values(x);
+          values[b].swap((bodies[b].*part)[stage]);
+        return system.marker_values(values);
+      };
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
+        const Eigen::VectorXd s = marker_values(&BodyStages::positions, i);
         Eigen::VectorXd marker_velocities, marker_accelerations;
         if (system.needs_velocities())
-          marker_velocities = system.marker_values(v);
+          marker_velocities = marker_values(&BodyStages::velocities, i);
         if (!system.masses().empty())
-          marker_accelerations = system.marker_values(accelerations);
+          marker_accelerations = marker_values(&BodyStages::accelerations, i);
         const Eigen::VectorXd F = system.marker_forces(time(i),
                                                        s,
                                                        marker_velocities,

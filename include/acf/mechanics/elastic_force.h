@@ -31,19 +31,20 @@ namespace ACF
                 NodalVector &scratch);
 
   /**
-   * Elastic force with Rayleigh damping, see damped_reduced_strain_force(): the
-   * damping is that of the small strain in the frame of the body for either
-   * measure.
+   * Elastic forces with Rayleigh damping at several states, see
+   * damped_reduced_strain_force(): the damping is that of the small strain in
+   * the frame of the body for either measure.
    *
+   * @param positions $x_a$, m, of each state
    * @param velocities $v_a$, m/s; not used for a body without damping
-   * @return false, and no force, if the body is turned inside out
+   * @param[out] forces N; must have the sizes of @p positions
+   * @return false, and no forces, if the body is turned inside out
    */
   bool
-  internal_force(const Body &body,
-                 const NodalVector &positions,
-                 const NodalVector &velocities,
-                 NodalVector &force,
-                 NodalVector &scratch);
+  internal_forces(const Body &body,
+                  const std::vector<NodalVector> &positions,
+                  const std::vector<NodalVector> &velocities,
+                  std::vector<NodalVector> &forces);
 
 
 

@@ -59,6 +59,10 @@ namespace ACF
     void
     vmult(NodalVector &y, const NodalVector &x) const;
 
+    /** The same for several vectors, for which the matrix is read once. */
+    void
+    vmult(std::vector<NodalVector> &y, const std::vector<NodalVector> &x) const;
+
     /** Row sums $\sum_b m_{ab}$, size n_nodes. */
     std::vector<double>
     row_sums() const;
@@ -105,6 +109,10 @@ namespace ACF
     /** $y = A x$, vectors of size 3 n_nodes. */
     void
     vmult(NodalVector &y, const NodalVector &x) const;
+
+    /** The same for several vectors, for which the matrix is read once. */
+    void
+    vmult(std::vector<NodalVector> &y, const std::vector<NodalVector> &x) const;
 
     const NodeGraph &
     graph() const

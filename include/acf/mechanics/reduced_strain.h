@@ -95,6 +95,17 @@ namespace ACF
                        NodalVector &scratch);
 
   /**
+   * The forces of reduced_strain_force() at several positions, for which the
+   * stiffness matrix is read once.
+   * @return false if a mean deformation gradient has no rotation
+   */
+  bool
+  reduced_strain_forces(const BodyOperators &body,
+                        const RotationMeasure measure,
+                        const std::vector<NodalVector> &positions,
+                        std::vector<NodalVector> &forces);
+
+  /**
    * The force of reduced_strain_force() with Rayleigh damping in the rotating
    * frame, on the same side of the equations of motion:
    * \f[ f_a = R (k_a - P g_a), \quad

@@ -103,13 +103,26 @@ namespace ACF
     StageConstraints multipliers;
 
   private:
+    /** States of a body in the stages. */
+    struct BodyStages
+    {
+      std::vector<NodalVector> positions;
+
+      /** Only if forces depend on them. */
+      std::vector<NodalVector> velocities;
+
+      std::vector<NodalVector> accelerations;
+    };
+
+    /**
+     * What a body and its loads alone give to the residual.
+     * @param[out] stages the states at which that is
+     * @return false if the body is turned inside out
+     */
     bool
-    body_residual(const unsigned int stage,
-                  const unsigned int body,
-                  const NodalVector &position,
-                  const NodalVector &velocity,
-                  const NodalVector &acceleration,
-                  NodalVector &residual) const;
+    body_residual(const unsigned int body,
+                  BodyStages &stages,
+                  StageVector &residual) const;
 
     void
     add_material_rotations(const unsigned int body,
