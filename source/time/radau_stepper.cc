@@ -4,14 +4,22 @@
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/radau_stepper.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ACF
 {
   namespace
   {
-    // Angle per step, rad, from which on the prediction follows the rotation:
-    // the error of the method in the earlier step, of its third power with two
-    // stages, is then larger than what the prediction leaves out.
+    // Angle per step, rad, from which on a prediction that follows the rotation
+    // may be better.
     constexpr double fast_turn = 0.15;
+
+    // Part of the local error that the iteration may add, and bounds. More than
+    // the largest one lets the energy rise where steps are long.
+    constexpr double newton_share      = 0.01;
+    constexpr double least_tolerance   = 1e-13;
+    constexpr double largest_tolerance = 1e-10;
   } // namespace
 
 
@@ -25,6 +33,10 @@ namespace ACF
     , A_inverse(tableau.A.inverse())
     , equations(system, tableau, statistics)
     , iteration(system, tableau, this->parameters, statistics)
+    , predictor(system, tableau)
+    , local_error(system, tableau)
+    , turns(system.bodies().size())
+    , turning_is_better(system.bodies().size(), true)
   {}
 
 
@@ -32,42 +44,38 @@ namespace ACF
   void
   RadauStepper::predict(const SystemState &state)
   {
+    if (!history.steps.empty())
+      predictor.start_step(history, equations.step_size());
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
+        if (history.steps.empty())
+          for (SystemVector &stage : equations.increments)
+            stage[b] = 0;
+        else
+          predictor.predict(history, b, equations.increments);
+
         const Vector3 spin = body_spin(system.bodies()[b].operators(),
                                        system.bodies()[b].rotation_measure(),
                                        state.positions[b],
                                        state.velocities[b])
                                .value_or(Vector3());
-        predict_straight(b);
-        if (spin.norm() * equations.step_size() > fast_turn)
-          predict_turning(b, state, spin);
+        turns[b] = spin.norm() * equations.step_size() > fast_turn;
+        if (!turns[b])
+          continue;
+        straight.resize(tableau.n_stages(), SystemVector(turns.size()));
+        turning.resize(tableau.n_stages(), SystemVector(turns.size()));
+        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+          straight[i][b] = turning[i][b] = equations.increments[i][b];
+        predict_turning(b, state, spin, turning);
+        if (turning_is_better[b])
+          for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+            equations.increments[i][b] = turning[i][b];
       }
-    for (Eigen::VectorXd &lambda : equations.multipliers)
-      lambda = state.multipliers;
-  }
-
-
-
-  void
-  RadauStepper::predict_straight(const unsigned int b)
-  {
-    // minus u_n + c_i tau v_n
-    const double ratio =
-      accepted_step_size > 0 ? equations.step_size() / accepted_step_size : 0;
-    const unsigned int last = tableau.n_stages() - 1;
-    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-      {
-        const std::vector<double> shape =
-          stage_shape(tableau, 1 + tableau.c(i) * ratio);
-        NodalVector &Z = equations.increments[i][b];
-        Z              = 0;
-        if (accepted_step_size > 0)
-          for (unsigned int j = 0; j <= last; ++j)
-            Z.add(shape[j] - (j == last ? 1. : 0.) -
-                    tableau.c(i) * ratio * A_inverse(last, j),
-                  accepted_stages[j][b]);
-      }
+    if (history.steps.empty())
+      for (Eigen::VectorXd &lambda : equations.multipliers)
+        lambda = state.multipliers;
+    else
+      predictor.predict(history, equations.multipliers);
   }
 
 
@@ -75,7 +83,8 @@ namespace ACF
   void
   RadauStepper::predict_turning(const unsigned int b,
                                 const SystemState &state,
-                                const Vector3 &spin)
+                                const Vector3 &spin,
+                                StageVector &increments) const
   {
     const BodyOperators &body     = system.bodies()[b].operators();
     const Vector3 centre          = mass_mean(body, state.positions[b]);
@@ -84,7 +93,7 @@ namespace ACF
       {
         const double time    = tableau.c(i) * equations.step_size();
         const Matrix3 turned = rotation_matrix(time * spin);
-        NodalVector &Z       = equations.increments[i][b];
+        NodalVector &Z       = increments[i][b];
         const Vector3 mean   = mass_mean(body, Z);
         for (unsigned int a = 0; a < body.n_nodes; ++a)
           {
@@ -106,6 +115,23 @@ namespace ACF
 
 
 
+  NewtonTolerances
+  RadauStepper::tolerances() const
+  {
+    if (parameters.newton_tolerance > 0)
+      return {parameters.newton_tolerance, 0};
+    if (expected_error < 0)
+      return {largest_tolerance, largest_tolerance};
+    const double ratio = equations.step_size() / history.steps[0].size;
+    const double error =
+      expected_error * std::pow(ratio, local_error_order(tableau));
+    return {std::min(largest_tolerance,
+                     std::max(least_tolerance, newton_share * error)),
+            largest_tolerance};
+  }
+
+
+
   StepReport
   RadauStepper::try_step(const SystemState &state, const double step_size)
   {
@@ -115,10 +141,30 @@ namespace ACF
     do
       {
         predict(state);
-        iteration.run(equations, report);
+        iteration.run(equations, tolerances(), report);
     } while (!report.converged && iteration.linearize_better());
     iteration.end_step(equations, report);
+    if (report.converged)
+      report.local_error =
+        local_error.estimate(equations.increments, step_size, history);
+    tried_error = report.local_error;
     return report;
+  }
+
+
+
+  double
+  RadauStepper::prediction_error(const unsigned int b,
+                                 const StageVector &prediction) const
+  {
+    double error = 0;
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      {
+        NodalVector difference(equations.increments[i][b]);
+        difference -= prediction[i][b];
+        error = std::max(error, difference.l2_norm());
+      }
+    return error;
   }
 
 
@@ -137,21 +183,32 @@ namespace ACF
   void
   RadauStepper::accept(SystemState &state)
   {
-    step_start           = state;
-    accepted_step_size   = equations.step_size();
-    accepted_stages      = equations.increments;
-    accepted_multipliers = equations.multipliers;
+    for (unsigned int b = 0; b < turns.size(); ++b)
+      turning_is_better[b] = !turns[b] || prediction_error(b, turning) <=
+                                            prediction_error(b, straight);
+    if (!history.steps.empty())
+      {
+        predictor.accept(history, equations.increments, equations.multipliers);
+        const double ratio = equations.step_size() / history.steps[0].size;
+        const double order = local_error_order(tableau);
+        expected_error =
+          std::max(tried_error, expected_error * std::pow(ratio, order) / 2);
+      }
+    history.push(equations.step_size(),
+                 equations.increments,
+                 equations.multipliers);
+    step_start = state;
     iteration.accept();
 
     const unsigned int last = tableau.n_stages() - 1;
-    state.time += accepted_step_size;
+    state.time += equations.step_size();
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
         const NodalVector x = equations.position(last, b);
         state.velocities[b] = equations.velocity(last, b);
         state.positions[b]  = x;
       }
-    state.multipliers = accepted_multipliers[last];
+    state.multipliers = equations.multipliers[last];
     update_laws(state, step_start);
   }
 
@@ -160,7 +217,8 @@ namespace ACF
   SystemState
   RadauStepper::interpolate(const double time) const
   {
-    const double tau                = accepted_step_size;
+    const StageVector &Z            = history.steps[0].increments;
+    const double tau                = history.steps[0].size;
     const double c                  = (time - step_start.time) / tau;
     const std::vector<double> shape = stage_shape(tableau, c);
     const unsigned int s            = tableau.n_stages();
@@ -184,15 +242,15 @@ namespace ACF
     state.time = time;
     state.multipliers.setZero();
     for (unsigned int i = 0; i < s; ++i)
-      state.multipliers += multiplier_shape(i) * accepted_multipliers[i];
+      state.multipliers +=
+        multiplier_shape(i) * history.steps[0].multipliers[i];
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
         state.positions[b].add(c * tau, step_start.velocities[b]);
         for (unsigned int i = 0; i < s; ++i)
           {
-            state.positions[b].add(shape[i], accepted_stages[i][b]);
-            state.velocities[b].add(velocity_of_stages(i),
-                                    accepted_stages[i][b]);
+            state.positions[b].add(shape[i], Z[i][b]);
+            state.velocities[b].add(velocity_of_stages(i), Z[i][b]);
           }
       }
     update_laws(state, step_start);

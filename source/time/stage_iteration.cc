@@ -20,6 +20,53 @@ namespace ACF
 
 
 
+  void
+  FirstIteration::start_step(const double tau, const int linearization)
+  {
+    if (step_size != tau || kind != linearization)
+      {
+        step_size     = tau;
+        kind          = linearization;
+        factor        = 1;
+        previous_norm = 0;
+        is_measured   = false;
+      }
+  }
+
+
+
+  double
+  FirstIteration::error(const double norm) const
+  {
+    constexpr unsigned int max_age  = 16;
+    constexpr double growth         = 1.1;
+    constexpr double largest_change = 4;
+    if (!is_measured || age >= max_age || norm > largest_change * previous_norm)
+      return std::max(1., factor) * norm;
+    return factor * std::pow(growth, age) * norm;
+  }
+
+
+
+  void
+  FirstIteration::end_step(const std::vector<double> &norms)
+  {
+    previous_norm = norms[0];
+    ++age;
+    if (norms.size() == 1)
+      return;
+    // the first contraction may be better than those that follow
+    double largest = 0;
+    for (unsigned int k = 1; k < norms.size(); ++k)
+      largest = std::max(largest, norms[k] / norms[k - 1]);
+    factor      = std::max(norms[1] / norms[0] / (1 - std::min(largest, 0.9)),
+                      std::numeric_limits<double>::epsilon());
+    age         = 0;
+    is_measured = true;
+  }
+
+
+
   StageIteration::StageIteration(const MultibodySystem &system,
                                  const ButcherTableau &tableau,
                                  const TimeParameters &parameters,
@@ -144,28 +191,16 @@ namespace ACF
 
 
   double
-  StageIteration::increment_norm(const SystemVector &increment,
-                                 const unsigned int b) const
-  {
-    const BodyOperators &operators = system.bodies()[b].operators();
-    return increment[b].l2_norm() / std::sqrt(1. * operators.n_nodes) /
-           operators.length;
-  }
-
-
-
-  double
   StageIteration::increment_norm(const StageVector &increment) const
   {
     double norm = 0;
     for (const SystemVector &stage : increment)
-      for (unsigned int b = 0; b < stage.size(); ++b)
-        {
-          const double relative = increment_norm(stage, b);
-          if (!std::isfinite(relative))
-            return relative;
-          norm = std::max(norm, relative);
-        }
+      {
+        const double relative = relative_norm(system, stage);
+        if (!std::isfinite(relative))
+          return relative;
+        norm = std::max(norm, relative);
+      }
     return norm;
   }
 
@@ -179,13 +214,13 @@ namespace ACF
                           StepReport &report)
   {
     acceleration.reset();
+    first_iteration.start_step(equations.step_size(),
+                               static_cast<int>(linearization));
     StageVector increment(equations.increments);
     StageConstraints constraint_increment(equations.multipliers);
-    double factor        = std::pow(convergence_factor, 0.8);
-    double previous_norm = 0, previous_ratio = 0;
-    unsigned int n_iterations = 0;
+    std::vector<double> norms;
     report.failure.clear();
-    while (n_iterations < parameters.max_newton_iterations)
+    while (norms.size() < parameters.max_newton_iterations)
       {
         bool solved =
           equations.residual(increment, constraint_increment, report.failure);
@@ -199,59 +234,22 @@ namespace ACF
         if (!solved)
           {
             // the prediction may be at fault, or the iterations since
-            if (n_iterations > 0)
+            if (!norms.empty())
               std::fill(marked.begin(), marked.end(), true);
             return;
           }
-        ++n_iterations;
+        norms.push_back(increment_norm(increment));
         ++report.iterations;
         ++statistics.newton_iterations;
+        if (!judge(norms, patience, report))
+          {
+            if (!std::isfinite(norms.back()))
+              std::fill(marked.begin(), marked.end(), true);
+            else if (norms.size() > 1)
+              mark_bodies(increment);
+            return;
+          }
 
-        const double norm = increment_norm(increment);
-        if (!std::isfinite(norm))
-          {
-            report.failure =
-              "the iteration produced numbers that are not "
-              "finite";
-            std::fill(marked.begin(), marked.end(), true);
-            return;
-          }
-        if (n_iterations == 1 && linearization != Linearization::simplified &&
-            norm > largest_correction)
-          {
-            report.failure = "the solution is too far from its prediction";
-            return;
-          }
-        if (n_iterations > 1)
-          {
-            // the mean of two iterations, as single ones may be misleading
-            const double ratio = norm / previous_norm;
-            report.contraction =
-              (n_iterations == 2 ? ratio : std::sqrt(ratio * previous_ratio));
-            previous_ratio = ratio;
-            factor         = report.contraction < 1
-                               ? report.contraction / (1 - report.contraction)
-                               : std::numeric_limits<double>::infinity();
-            const double predicted =
-              factor * norm *
-              std::pow(report.contraction,
-                       parameters.max_newton_iterations - n_iterations);
-            if (n_iterations > patience)
-              {
-                if (report.contraction >= 0.99)
-                  report.failure = "the iteration diverges";
-                else if (predicted > parameters.newton_tolerance)
-                  report.failure = "the iteration contracts too slowly";
-                if (!report.failure.empty())
-                  {
-                    mark_bodies(increment);
-                    return;
-                  }
-              }
-          }
-        previous_norm         = norm;
-        report.error_estimate = factor * norm;
-        report.converged = report.error_estimate <= parameters.newton_tolerance;
         // the last increment is small enough as it is
         if (accelerate && !report.converged)
           acceleration.accelerate(increment, constraint_increment);
@@ -263,13 +261,68 @@ namespace ACF
           }
         if (report.converged)
           {
-            convergence_factor =
-              std::max(factor, std::numeric_limits<double>::epsilon());
+            first_iteration.end_step(norms);
             return;
           }
       }
     report.failure = "the iteration did not reach its tolerance";
     mark_bodies(increment);
+  }
+
+
+
+  bool
+  StageIteration::judge(const std::vector<double> &norms,
+                        const unsigned int patience,
+                        StepReport &report) const
+  {
+    const unsigned int n = norms.size();
+    const double norm    = norms.back();
+    if (!std::isfinite(norm))
+      {
+        report.failure = "the iteration produced numbers that are not finite";
+        return false;
+      }
+    if (n == 1)
+      {
+        if (linearization != Linearization::simplified &&
+            norm > largest_correction)
+          {
+            report.failure = "the solution is too far from its prediction";
+            return false;
+          }
+        report.error_estimate = first_iteration.error(norm);
+        report.converged      = report.error_estimate <= tolerances.error;
+        return true;
+      }
+
+    // the mean of two iterations, as single ones may be misleading
+    report.contraction =
+      (n == 2 ? norm / norms[0] : std::sqrt(norm / norms[n - 3]));
+    const double factor   = report.contraction < 1
+                              ? report.contraction / (1 - report.contraction)
+                              : std::numeric_limits<double>::infinity();
+    report.error_estimate = factor * norm;
+    report.converged =
+      report.error_estimate <= tolerances.error ||
+      (report.contraction > 0.5 && 10 * norm <= tolerances.round_off);
+    const double predicted =
+      report.error_estimate *
+      std::pow(report.contraction, parameters.max_newton_iterations - n);
+    if (report.converged || n <= patience)
+      return true;
+    if (report.contraction >= 0.99)
+      report.failure = "the iteration diverges";
+    else if (predicted > tolerances.error)
+      report.failure = "the iteration contracts too slowly";
+    // what round-off allows may be good enough
+    if (!report.failure.empty() &&
+        report.error_estimate <= tolerances.round_off)
+      {
+        report.failure.clear();
+        report.converged = true;
+      }
+    return report.failure.empty();
   }
 
 
@@ -328,7 +381,7 @@ namespace ACF
     const double largest = increment_norm(increment);
     for (unsigned int b = 0; b < marked.size(); ++b)
       for (const SystemVector &stage : increment)
-        if (increment_norm(stage, b) > 0.01 * largest)
+        if (relative_norm(system.bodies()[b], stage[b]) > 0.01 * largest)
           marked[b] = true;
   }
 
@@ -398,8 +451,11 @@ namespace ACF
 
 
   void
-  StageIteration::run(StageEquations &equations, StepReport &report)
+  StageIteration::run(StageEquations &equations,
+                      const NewtonTolerances &step_tolerances,
+                      StepReport &report)
   {
+    tolerances = step_tolerances;
     if (!prepare(equations, report))
       return;
     if (linearization == Linearization::exact)

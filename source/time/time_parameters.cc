@@ -32,8 +32,10 @@ namespace ACF
       "Newton tolerance",
       newton_tolerance,
       "Bound on the predicted error of the positions that the iteration of a "
-      "step leaves, relative to the length of a body. Units: none.",
-      Patterns::Double(1e-14, 1e-2));
+      "step leaves, relative to the length of a body; zero: 1 % of the "
+      "estimated error of the step itself, within 1e-13 and 1e-10. Units: "
+      "none.",
+      Patterns::Double(0, 1e-2));
     prm.add_parameter("Maximal Newton iterations",
                       max_newton_iterations,
                       "Iterations after which a step is given up and halved. "
@@ -91,6 +93,11 @@ namespace ACF
     };
     require_positive("End time", end_time);
     require_positive("Step size", step_size);
+    if (newton_tolerance > 0 && newton_tolerance < 1e-14)
+      throw InputError("Time integration",
+                       "Newton tolerance",
+                       "a tolerance below round-off",
+                       "0 or a number in [1e-14, 0.01]");
     if (step_size > end_time)
       throw InputError("Time integration",
                        "Step size",

@@ -86,10 +86,12 @@ TEST(Pendulum, AgreesWithTheBeamTheoryAndConverges)
                 << run.statistics.newton_iterations << " iterations"
                 << std::endl;
 
-      // two iterations per step and one factorisation
+      // 1.2 iterations per step were measured, up to three where it falls off
+      // at the start, and one factorisation
       EXPECT_EQ(run.statistics.steps, 1000U);
       EXPECT_EQ(run.statistics.rejected_steps, 0U);
-      EXPECT_LE(run.statistics.max_newton_iterations, 2U);
+      EXPECT_LE(run.statistics.max_newton_iterations, 3U);
+      EXPECT_LE(run.statistics.newton_iterations, 1400U);
       EXPECT_EQ(run.statistics.complex_factorizations, 1U);
       EXPECT_EQ(run.statistics.real_factorizations, 0U);
       EXPECT_EQ(run.statistics.complex_solves,
@@ -134,5 +136,5 @@ TEST(Pendulum, TetrahedraWithTheHingeOfThePaper)
   EXPECT_LT(difference.deflection, 0.02);
   EXPECT_LT(out_of_plane, 1e-9);
   EXPECT_EQ(run.statistics.complex_factorizations, 1U);
-  EXPECT_LE(run.statistics.max_newton_iterations, 2U);
+  EXPECT_LE(run.statistics.max_newton_iterations, 3U);
 }

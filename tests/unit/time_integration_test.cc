@@ -407,3 +407,24 @@ TEST(StepController, TimesDoNotDrift)
     controller.accept();
   EXPECT_DOUBLE_EQ(controller.time(), 1000.);
 }
+
+
+
+// 1.06 solves per step were measured: where the motion is smooth the
+// iteration needs a second one from time to time only, to measure its
+// contraction.
+TEST(TimeIntegration, SmoothStepsTakeOneSolve)
+{
+  for (const unsigned int s : {2U, 3U})
+    {
+      auto overrides = options(s, 2e-3, 1.);
+      overrides.push_back("Time integration/Newton tolerance=0");
+      RecordedRun run(swinging_block(), 0.1, overrides);
+      run.run();
+      const double iterations =
+        1. * run.statistics.newton_iterations / run.statistics.steps;
+      std::cout << s << " stages: " << iterations << " iterations per step"
+                << std::endl;
+      EXPECT_LT(iterations, 1.2);
+    }
+}

@@ -4,8 +4,9 @@
 #ifndef acf_time_radau_stepper_h
 #define acf_time_radau_stepper_h
 
+#include <acf/time/local_error.h>
 #include <acf/time/stage_iteration.h>
-
+#include <acf/time/stage_predictor.h>
 
 namespace ACF
 {
@@ -41,25 +42,32 @@ namespace ACF
 
   private:
     /**
-     * Predicts the stages of the step by the collocation polynomial of the
-     * accepted step beyond its end, before the first step by a motion without
-     * acceleration.
+     * Predicts the stages of the step (StagePredictor); those of the first step
+     * by a motion without acceleration.
      */
     void
     predict(const SystemState &state);
 
-    void
-    predict_straight(const unsigned int body);
-
     /**
-     * Changes the prediction for a body that turns fast: only its centre of
-     * mass follows the polynomial, the rest moves without acceleration in a
+     * A prediction for a body that turns fast: only its centre of mass follows
+     * that of the StagePredictor, the rest moves without acceleration in a
      * frame that turns about the centre with the spin of the state, rad/s.
      */
     void
     predict_turning(const unsigned int body,
                     const SystemState &state,
-                    const Vector3 &spin);
+                    const Vector3 &spin,
+                    StageVector &increments) const;
+
+    /** Where the iteration ends: as the parameters say, or a part of the
+     * estimated local error of the earlier step. */
+    NewtonTolerances
+    tolerances() const;
+
+    /** Largest distance of accepted stages of a body from a prediction, m. */
+    double
+    prediction_error(const unsigned int body,
+                     const StageVector &prediction) const;
 
     /** Law values of force elements, continuous from an earlier state. */
     void
@@ -74,10 +82,25 @@ namespace ACF
     StageEquations equations;
     StageIteration iteration;
 
-    StageVector accepted_stages;
-    StageConstraints accepted_multipliers;
+    StageHistory history;
+    StagePredictor predictor;
+    LocalError local_error;
+
+    /** Both predictions for bodies that turn fast, and which was the better one
+     * in the last step. */
+    StageVector straight;
+    StageVector turning;
+    std::vector<bool> turns;
+    std::vector<bool> turning_is_better;
+
+    /** Estimated in the last steps, falls at most by half per step; negative:
+     * there is none. */
+    double expected_error = -1;
+
+    /** Of the tried step. */
+    double tried_error = 0;
+
     SystemState step_start;
-    double accepted_step_size = 0;
   };
 } // namespace ACF
 

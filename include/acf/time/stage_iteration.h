@@ -6,6 +6,7 @@
 
 #include <acf/solvers/anderson_acceleration.h>
 #include <acf/time/stage_equations.h>
+#include <acf/time/stage_history.h>
 #include <acf/time/time_parameters.h>
 
 #include <functional>
@@ -26,8 +27,62 @@ namespace ACF
     /** Predicted remaining error, relative to the bodies' length. */
     double error_estimate = 0;
 
+    /** Estimated error that the step adds if it is solved exactly, relative to
+     * the bodies' length, see LocalError. */
+    double local_error = 0;
+
     /** Why the step did not converge. */
     std::string failure;
+  };
+
+
+
+  /** Where an iteration ends. */
+  struct NewtonTolerances
+  {
+    /** Bound on the predicted error. */
+    double error = 1e-10;
+
+    /** A bound that is good enough where round-off keeps the error above the
+     * other one. */
+    double round_off = 0;
+  };
+
+
+
+  /**
+   * Whether the first iteration of a step was enough: what it leaves is
+   * $\theta / (1 - \theta)\, |\Delta Z^1|$ with a contraction that was
+   * measured in an earlier step, at most 16 steps ago, and is taken to be 1.1
+   * times as large for each of them. The measurement does not hold if the step
+   * size or the linearisation is another one, or if $|\Delta Z^1|$ is more than
+   * four times that of the last step: something new has happened.
+   */
+  class FirstIteration
+  {
+  public:
+    /** @param kind of the linearisation */
+    void
+    start_step(const double step_size, const int kind);
+
+    /** Predicted error that the first iteration of a step leaves; without a
+     * measurement that holds at least the increment itself.
+     * @param norm $|\Delta Z^1|$ */
+    double
+    error(const double norm) const;
+
+    /** A step has converged.
+     * @param norms $|\Delta Z^k|$ of all iterations */
+    void
+    end_step(const std::vector<double> &norms);
+
+  private:
+    double step_size     = 0;
+    int kind             = 0;
+    double factor        = 1;
+    double previous_norm = 0;
+    unsigned int age     = 0;
+    bool is_measured     = false;
   };
 
 
@@ -40,8 +95,8 @@ namespace ACF
    * Convergence control follows RADAU5 (Hairer and Wanner, Sec. IV.8): with the
    * increments $|\Delta Z^k|$ and $\theta_k = |\Delta Z^k| / |\Delta Z^{k-1}|$
    * the iteration ends when the predicted remaining error
-   * $\theta / (1 - \theta)\, |\Delta Z^k|$ is below the tolerance; before the
-   * second iteration the $\theta$ of earlier steps serves, with growing doubt.
+   * $\theta / (1 - \theta)\, |\Delta Z^k|$ is below the tolerance. After the
+   * first iteration the $\theta$ of an earlier step serves (FirstIteration).
    * The norm of a body is the root mean square of the increments of its nodes
    * divided by its length, that of the system the largest over bodies and
    * stages. Errors of velocities and multipliers are those of Z divided by
@@ -86,10 +141,14 @@ namespace ACF
     /**
      * Iterates from the prediction to the tolerance, or to a failure.
      * @param[in,out] equations stages: predicted ones, replaced by the solution
+     * @param tolerances of the predicted error, relative to the length of the
+     * bodies
      * @param[in,out] report adds the iterations
      */
     void
-    run(StageEquations &equations, StepReport &report);
+    run(StageEquations &equations,
+        const NewtonTolerances &tolerances,
+        StepReport &report);
 
     /** Chooses the next linearisation to try. @return false if there is none
      */
@@ -148,6 +207,16 @@ namespace ACF
             StageEquations &equations,
             StepReport &report);
 
+    /**
+     * Sets the outcome of an iteration in the report.
+     * @param norms of the increments of this iteration and those before it
+     * @return false, and why, if the iteration has failed
+     */
+    bool
+    judge(const std::vector<double> &norms,
+          const unsigned int patience,
+          StepReport &report) const;
+
     /** Newton's method with the exact tangent of the bodies that need it. */
     void
     iterate_exactly(StageEquations &equations, StepReport &report);
@@ -181,9 +250,7 @@ namespace ACF
     void
     correct_constraints(StageEquations &equations);
 
-    double
-    increment_norm(const SystemVector &increment, const unsigned int b) const;
-
+    /** The largest one of the stages, see relative_norm(). */
     double
     increment_norm(const StageVector &increment) const;
 
@@ -216,8 +283,10 @@ namespace ACF
     static constexpr unsigned int first_wait   = 4;
     static constexpr unsigned int longest_wait = 64;
 
-    /** $\theta / (1 - \theta)$ of the last measurement. */
-    double convergence_factor = 1;
+    /** Of the present step. */
+    NewtonTolerances tolerances;
+
+    FirstIteration first_iteration;
   };
 } // namespace ACF
 

@@ -22,9 +22,9 @@ namespace ACF
     double end_time  = 0;
     double step_size = 0;
 
-    /** Bound on the predicted error of the iteration, relative to the bodies.
-     */
-    double newton_tolerance = 1e-10;
+    /** Bound on the predicted error of the iteration, relative to the bodies;
+     * 0: a part of the estimated error of the step. */
+    double newton_tolerance = 0;
 
     unsigned int max_newton_iterations = 20;
     unsigned int max_krylov_iterations = 40;

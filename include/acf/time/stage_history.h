@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#ifndef acf_time_stage_history_h
+#define acf_time_stage_history_h
+
+#include <acf/solvers/stage_solver.h>
+
+#include <deque>
+
+namespace ACF
+{
+  /** Root mean square of a nodal vector over the nodes of a body, divided by
+   * the length of the body. */
+  double
+  relative_norm(const Body &body, const NodalVector &vector);
+
+  /** The largest one of the bodies. */
+  double
+  relative_norm(const MultibodySystem &system, const SystemVector &vector);
+
+
+
+  /** The last accepted steps, the newest one first. */
+  struct StageHistory
+  {
+    struct Step
+    {
+      /** $\tau$, and that of the step before; 0: there was none. s */
+      double size;
+      double size_before;
+
+      /** Z, m */
+      StageVector increments;
+
+      /** $\Lambda$ */
+      StageConstraints multipliers;
+    };
+
+    /** Keeps at most two. */
+    void
+    push(const double step_size,
+         const StageVector &increments,
+         const StageConstraints &multipliers);
+
+    std::deque<Step> steps;
+  };
+} // namespace ACF
+
+#endif

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/time/stage_history.h>
+
+#include <cmath>
+
+namespace ACF
+{
+  double
+  relative_norm(const Body &body, const NodalVector &vector)
+  {
+    return vector.l2_norm() / std::sqrt(1. * body.operators().n_nodes) /
+           body.operators().length;
+  }
+
+
+
+  double
+  relative_norm(const MultibodySystem &system, const SystemVector &vector)
+  {
+    double norm = 0;
+    for (unsigned int b = 0; b < vector.size(); ++b)
+      {
+        const double relative = relative_norm(system.bodies()[b], vector[b]);
+        if (!std::isfinite(relative))
+          return relative;
+        norm = std::max(norm, relative);
+      }
+    return norm;
+  }
+
+
+
+  void
+  StageHistory::push(const double step_size,
+                     const StageVector &increments,
+                     const StageConstraints &multipliers)
+  {
+    const double before = steps.empty() ? 0 : steps.front().size;
+    if (steps.size() < 2)
+      steps.emplace_front();
+    else
+      {
+        // without a new allocation
+        steps.push_front(std::move(steps.back()));
+        steps.pop_back();
+      }
+    steps.front().size        = step_size;
+    steps.front().size_before = before;
+    steps.front().increments  = increments;
+    steps.front().multipliers = multipliers;
+  }
+} // namespace ACF

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/time/stage_predictor.h>
+
+#include <algorithm>
+
+namespace ACF
+{
+  StagePredictor::StagePredictor(const MultibodySystem &system,
+                                 const ButcherTableau &tableau)
+    : system(system)
+    , tableau(tableau)
+    , A_squared(tableau.A * tableau.A)
+    , A_squared_inverse(A_squared.inverse())
+    , products(system.bodies().size())
+  {}
+
+
+
+  void
+  StagePredictor::start_step(const StageHistory &history, const double tau)
+  {
+    step_size                = tau;
+    const double ratio       = tau / history.steps[0].size;
+    const Eigen::VectorXd &c = tableau.c;
+    E.resize(c.size(), c.size());
+    for (unsigned int i = 0; i < c.size(); ++i)
+      for (unsigned int j = 0; j < c.size(); ++j)
+        {
+          E(i, j) = 1;
+          for (unsigned int k = 0; k < c.size(); ++k)
+            if (k != j)
+              E(i, j) *= (1 + ratio * c(i) - c(k)) / (c(j) - c(k));
+        }
+    extrapolation = ratio * ratio * A_squared * E * A_squared_inverse;
+  }
+
+
+
+  void
+  StagePredictor::extrapolate(const StageHistory &history,
+                              const unsigned int b,
+                              const double factor,
+                              StageVector &increments) const
+  {
+    const StageVector &last = history.steps[0].increments;
+    for (unsigned int i = 0; i < increments.size(); ++i)
+      for (unsigned int j = 0; j < increments.size(); ++j)
+        increments[i][b].add(factor * extrapolation(i, j), last[j][b]);
+  }
+
+
+
+  void
+  StagePredictor::extrapolate(const StageHistory &history,
+                              const double factor,
+                              StageConstraints &multipliers) const
+  {
+    const StageConstraints &last = history.steps[0].multipliers;
+    for (unsigned int i = 0; i < multipliers.size(); ++i)
+      for (unsigned int j = 0; j < multipliers.size(); ++j)
+        multipliers[i] += factor * E(i, j) * last[j];
+  }
+
+
+
+  Eigen::VectorXd
+  StagePredictor::coefficients(const Eigen::MatrixXd &products)
+  {
+    const unsigned int n         = products.rows();
+    const unsigned int n_terms   = std::min(max_terms, n / 2);
+    const unsigned int n_targets = std::min(max_targets, n - n_terms);
+    Eigen::MatrixXd matrix       = Eigen::MatrixXd::Zero(n_terms, n_terms);
+    Eigen::VectorXd rhs          = Eigen::VectorXd::Zero(n_terms);
+    double size                  = 0;
+    for (unsigned int k = 0; k < n_targets; ++k)
+      {
+        matrix += products.block(k + 1, k + 1, n_terms, n_terms);
+        rhs += products.block(k + 1, k, n_terms, 1);
+        size += products(k, k);
+      }
+    if (!(size > 0) || n_terms == 0)
+      return Eigen::VectorXd::Zero(n_terms);
+
+    // regularised, as terms may be multiples of each other up to the tolerance
+    // of the iteration
+    matrix.diagonal().array() += 1e-6 * matrix.diagonal().maxCoeff();
+    const Eigen::VectorXd a = matrix.ldlt().solve(rhs);
+    const double rest       = size - 2 * a.dot(rhs) + a.dot(matrix * a);
+    const double predicted =
+      a.dot(products.topLeftCorner(n_terms, n_terms) * a);
+    if (rest < 0.25 * size && predicted < 4 * size)
+      return a;
+    return Eigen::VectorXd::Zero(n_terms);
+  }
+
+
+
+  void
+  StagePredictor::predict(const StageHistory &history,
+                          const unsigned int b,
+                          StageVector &increments) const
+  {
+    for (SystemVector &stage : increments)
+      stage[b] = 0;
+    extrapolate(history, b, 1, increments);
+    if (defects.empty() || step_size != history.steps[0].size)
+      return;
+    const Eigen::VectorXd a = coefficients(products[b]);
+    for (unsigned int j = 0; j < a.size(); ++j)
+      if (a(j) != 0)
+        for (unsigned int i = 0; i < increments.size(); ++i)
+          increments[i][b].add(a(j), defects[j].increments[i][b]);
+  }
+
+
+
+  void
+  StagePredictor::predict(const StageHistory &history,
+                          StageConstraints &multipliers) const
+  {
+    for (Eigen::VectorXd &stage : multipliers)
+      stage.setZero();
+    extrapolate(history, 1, multipliers);
+    if (defects.empty() || step_size != history.steps[0].size)
+      return;
+    const Eigen::VectorXd a = coefficients(multiplier_products);
+    for (unsigned int j = 0; j < a.size(); ++j)
+      for (unsigned int i = 0; i < multipliers.size(); ++i)
+        multipliers[i] += a(j) * defects[j].multipliers[i];
+  }
+
+
+
+  void
+  StagePredictor::accept(const StageHistory &history,
+                         const StageVector &increments,
+                         const StageConstraints &multipliers)
+  {
+    if (step_size != history.steps[0].size)
+      {
+        defects.clear();
+        return;
+      }
+    Defect newest{increments, multipliers};
+    for (unsigned int b = 0; b < products.size(); ++b)
+      extrapolate(history, b, -1, newest.increments);
+    extrapolate(history, -1, newest.multipliers);
+    defects.push_front(std::move(newest));
+    if (defects.size() > max_terms + max_targets)
+      defects.pop_back();
+
+    // appends the products with the newest one in front of the others
+    const unsigned int n = defects.size();
+    const auto update    = [&](Eigen::MatrixXd &matrix, const auto &product) {
+      Eigen::MatrixXd updated(n, n);
+      updated.bottomRightCorner(n - 1, n - 1) =
+        matrix.topLeftCorner(n - 1, n - 1);
+      for (unsigned int k = 0; k < n; ++k)
+        {
+          updated(0, k) = 0;
+          for (unsigned int i = 0; i < increments.size(); ++i)
+            updated(0, k) += product(defects[0], defects[k], i);
+          updated(k, 0) = updated(0, k);
+        }
+      matrix = updated;
+    };
+    for (unsigned int b = 0; b < products.size(); ++b)
+      update(products[b],
+             [b](const Defect &x, const Defect &y, const unsigned int i) {
+               return x.increments[i][b] * y.increments[i][b];
+             });
+    update(multiplier_products,
+           [](const Defect &x, const Defect &y, const unsigned int i) {
+             return x.multipliers[i].dot(y.multipliers[i]);
+           });
+  }
+} // namespace ACF
