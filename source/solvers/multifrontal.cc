@@ -2,13 +2,20 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
+#include <acf/base/parallel.h>
 #include <acf/solvers/multifrontal.h>
+#include <acf/solvers/tree_partition.h>
+
+#include <deal.II/base/multithread_info.h>
 
 #include <deal.II/lac/lapack_templates.h>
 
 #include <algorithm>
 #include <cmath>
 #include <complex>
+
+extern "C" void
+openblas_set_num_threads(int n_threads);
 
 namespace ACF
 {
@@ -143,17 +150,21 @@ namespace ACF
 
 
 
-    // Factorises the supernodes of a tree one after the other.
+    // Factorises the supernodes of a tree, those of one branch one after the
+    // other.
     template <typename Number>
     class Multifrontal
     {
     public:
       Multifrontal(const EliminationTree &tree,
+                   const TreePartition &partition,
                    const ShiftedMatrix<Number> &matrix,
                    const SupernodeSink<Number> &sink)
         : tree(tree)
+        , partition(partition)
         , matrix(matrix)
         , sink(sink)
+        , for_top(tree.supernodes().size())
         , children(tree.supernodes().size())
       {
         for (unsigned int s = 0; s < tree.supernodes().size(); ++s)
@@ -161,33 +172,57 @@ namespace ACF
             children[tree.supernodes()[s].parent].push_back(s);
       }
 
-      /** With the children done before. */
+      /** All of a branch, or the top after the branches. */
       void
-      factorize(const unsigned int s, Front<Number> &front)
+      factorize(const std::vector<unsigned int> &supernodes)
       {
-        const EliminationTree::Supernode &supernode = tree.supernodes()[s];
-        const std::size_t k                         = dim * supernode.n_columns;
-        const std::size_t m = dim * supernode.rows.size();
-        front.reinit(k + m);
-        add_matrix(supernode, front);
-        // children were pushed one after the other, the last one is on top
-        for (auto child = children[s].rbegin(); child != children[s].rend();
-             ++child)
+        Front<Number> front;
+        // what is left of the fronts that their parents have not taken yet
+        std::vector<Number> stack;
+        std::size_t stack_size = 0;
+        for (const unsigned int s : supernodes)
           {
-            const std::size_t size =
-              dim * tree.supernodes()[*child].rows.size();
-            stack_size -= size * size;
-            add_update(*child, stack.data() + stack_size, supernode, front);
+            const EliminationTree::Supernode &supernode = tree.supernodes()[s];
+            const std::size_t k = dim * supernode.n_columns;
+            const std::size_t m = dim * supernode.rows.size();
+            front.reinit(k + m);
+            add_matrix(supernode, front);
+            // the last child is on top of the stack
+            for (auto child = children[s].rbegin(); child != children[s].rend();
+                 ++child)
+              if (partition.is_top[s])
+                {
+                  add_update(*child, for_top[*child].data(), supernode, front);
+                  std::vector<Number>().swap(for_top[*child]);
+                }
+              else
+                {
+                  const std::size_t size =
+                    dim * tree.supernodes()[*child].rows.size();
+                  stack_size -= size * size;
+                  add_update(*child,
+                             stack.data() + stack_size,
+                             supernode,
+                             front);
+                }
+            front.eliminate(k);
+            sink(s, front.column(0), front.size());
+
+            const unsigned int parent = supernode.parent;
+            const bool to_top =
+              parent == EliminationTree::none || partition.is_top[parent];
+            if (to_top)
+              for_top[s].resize(m * m);
+            else if (stack.size() < stack_size + m * m)
+              stack.resize(std::max(stack_size + m * m, 3 * stack.size() / 2));
+            Number *const update =
+              to_top ? for_top[s].data() : stack.data() + stack_size;
+            for (std::size_t j = 0; j < m; ++j)
+              std::copy_n(front.column(k + j) + k + j,
+                          m - j,
+                          update + j * m + j);
+            stack_size += (to_top ? 0 : m * m);
           }
-        front.eliminate(k);
-        sink(s, front.column(0), front.size());
-        if (stack.size() < stack_size + m * m)
-          stack.resize(std::max(stack_size + m * m, 3 * stack.size() / 2));
-        for (std::size_t j = 0; j < m; ++j)
-          std::copy_n(front.column(k + j) + k + j,
-                      m - j,
-                      stack.data() + stack_size + j * m + j);
-        stack_size += m * m;
       }
 
     private:
@@ -278,14 +313,14 @@ namespace ACF
       }
 
       const EliminationTree &tree;
+      const TreePartition &partition;
       const ShiftedMatrix<Number> &matrix;
       const SupernodeSink<Number> &sink;
 
       std::vector<std::vector<unsigned int>> children;
 
-      /** What is left of the fronts that their parents have not taken yet. */
-      std::vector<Number> stack;
-      std::size_t stack_size = 0;
+      /** What is left of the fronts of children of the top. */
+      std::vector<std::vector<Number>> for_top;
     };
   } // namespace
 
@@ -297,10 +332,29 @@ namespace ACF
                          const ShiftedMatrix<Number> &matrix,
                          const SupernodeSink<Number> &sink)
   {
-    Multifrontal<Number> multifrontal(tree, matrix, sink);
-    Front<Number> front;
-    for (unsigned int s = 0; s < tree.supernodes().size(); ++s)
-      multifrontal.factorize(s, front);
+    const unsigned int n_threads  = MultithreadInfo::n_threads();
+    const TreePartition partition = divide_tree(tree, n_threads);
+    Multifrontal<Number> multifrontal(tree, partition, matrix, sink);
+    // threads of the BLAS only where there are no branches left
+    if (n_threads > 1)
+      openblas_set_num_threads(1);
+    std::vector<std::string> failures(partition.branches.size());
+    run_tasks(partition.branches.size(), [&](const unsigned int branch) {
+      try
+        {
+          multifrontal.factorize(partition.branches[branch]);
+        }
+      catch (const SimulationError &error)
+        {
+          failures[branch] = error.what();
+        }
+    });
+    if (n_threads > 1)
+      openblas_set_num_threads(n_threads);
+    for (const std::string &failure : failures)
+      if (!failure.empty())
+        throw SimulationError(failure);
+    multifrontal.factorize(partition.top);
   }
 
 

@@ -123,10 +123,9 @@ namespace ACF
     for (const EliminationTree::Supernode &supernode : tree->supernodes())
       {
         Block block;
-        block.offset     = n_values;
-        block.n_columns  = dim * supernode.n_columns;
-        block.n_rows     = block.n_columns + dim * supernode.rows.size();
-        block.n_own_rows = supernode.rows.size();
+        block.offset    = n_values;
+        block.n_columns = dim * supernode.n_columns;
+        block.n_rows    = block.n_columns + dim * supernode.rows.size();
         for (unsigned int j = 0; j < block.n_columns; j += Kernels::panel_width)
           n_values += Kernels::panel_size(j,
                                           std::min(Kernels::panel_width,
@@ -137,91 +136,18 @@ namespace ACF
         blocks.push_back(block);
       }
     values.resize(n_values);
-    divide(n_bytes() < smallest_parallel_factor ? 1 : n_threads);
-  }
-
-
-
-  template <typename Number, typename Real>
-  void
-  SupernodalFactor<Number, Real>::divide(const unsigned int n_threads)
-  {
-    const auto &supernodes = tree->supernodes();
-    std::vector<std::vector<unsigned int>> children(supernodes.size());
-    std::vector<double> work(supernodes.size());
-    std::vector<unsigned int> roots;
-    for (unsigned int s = 0; s < supernodes.size(); ++s)
+    partition =
+      divide_tree(*tree, n_bytes() < smallest_parallel_factor ? 1 : n_threads);
+    for (unsigned int s = 0; s < blocks.size(); ++s)
       {
-        work[s] += n_entries(supernodes[s]);
-        if (supernodes[s].parent == EliminationTree::none)
-          roots.push_back(s);
-        else
-          {
-            work[supernodes[s].parent] += work[s];
-            children[supernodes[s].parent].push_back(s);
-          }
+        const auto &rows   = tree->supernodes()[s].rows;
+        unsigned int n_own = rows.size();
+        if (!partition.is_top[s])
+          while (n_own > 0 &&
+                 partition.is_top[tree->supernode_at(rows[n_own - 1])])
+            --n_own;
+        blocks[s].n_own_rows = n_own;
       }
-
-    // Cut the largest branch until the longest share plus what is above the
-    // branches does not get shorter any more.
-    const auto heavier = [&](const unsigned int a, const unsigned int b) {
-      return work[a] > work[b] || (work[a] == work[b] && a < b);
-    };
-    std::vector<unsigned int> shares(supernodes.size(), 0), best;
-    double best_time = std::numeric_limits<double>::infinity(), top = 0;
-    std::vector<bool> above(supernodes.size(), false);
-    for (unsigned int n_failures = 0; n_failures < 8;)
-      {
-        std::sort(roots.begin(), roots.end(), heavier);
-        std::vector<double> load(n_threads);
-        std::vector<unsigned int> share_of_root;
-        for (const unsigned int root : roots)
-          {
-            const unsigned int share =
-              std::min_element(load.begin(), load.end()) - load.begin();
-            load[share] += work[root];
-            shares[root] = share;
-          }
-        const double time = top + *std::max_element(load.begin(), load.end());
-        if (time < 0.99 * best_time)
-          {
-            best_time  = time;
-            n_failures = 0;
-            best.assign(supernodes.size(), EliminationTree::none);
-            for (unsigned int s = supernodes.size(); s-- > 0;)
-              if (!above[s])
-                {
-                  const unsigned int parent = supernodes[s].parent;
-                  best[s] = (parent == EliminationTree::none || above[parent])
-                              ? shares[s]
-                              : best[parent];
-                }
-          }
-        else
-          ++n_failures;
-        const unsigned int root = roots.front();
-        if (n_threads == 1 || children[root].empty())
-          break;
-        above[root] = true;
-        top += n_entries(supernodes[root]);
-        roots.erase(roots.begin());
-        roots.insert(roots.end(), children[root].begin(), children[root].end());
-      }
-
-    partition.branches.resize(n_threads);
-    for (unsigned int s = 0; s < supernodes.size(); ++s)
-      if (best[s] == EliminationTree::none)
-        partition.top.push_back(s);
-      else
-        {
-          partition.branches[best[s]].push_back(s);
-          const auto &rows   = supernodes[s].rows;
-          unsigned int n_own = 0;
-          while (n_own < rows.size() &&
-                 best[tree->supernode_at(rows[n_own])] != EliminationTree::none)
-            ++n_own;
-          blocks[s].n_own_rows = n_own;
-        }
   }
 
 
@@ -328,8 +254,8 @@ namespace ACF
     void
     solve()
     {
-      const Partition &partition    = factor.partition;
-      const unsigned int n_branches = partition.branches.size();
+      const TreePartition &partition = factor.partition;
+      const unsigned int n_branches  = partition.branches.size();
       // what branches but the first subtract above themselves
       std::vector<std::vector<Real>> sums(n_branches);
       run_tasks(n_branches, [&](const unsigned int branch) {

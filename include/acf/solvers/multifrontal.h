@@ -36,7 +36,8 @@ namespace ACF
   /**
    * Factorises $K = L D L^T$ (without conjugation) by the multifrontal method
    * (Duff and Reid, ACM Trans. Math. Softw. 9, 1983) with dense products of the
-   * BLAS, without pivoting.
+   * BLAS, without pivoting. Branches of the tree are factorised in parallel.
+   * @param sink is called by several threads, for different supernodes
    * @throws SimulationError if a pivot is zero or not finite
    */
   template <typename Number>

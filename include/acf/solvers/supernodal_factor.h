@@ -4,7 +4,7 @@
 #ifndef acf_solvers_supernodal_factor_h
 #define acf_solvers_supernodal_factor_h
 
-#include <acf/solvers/elimination_tree.h>
+#include <acf/solvers/tree_partition.h>
 
 #include <deal.II/base/aligned_vector.h>
 
@@ -72,16 +72,6 @@ namespace ACF
       unsigned int n_own_rows;
     };
 
-    /** Supernodes of the branches that threads solve, and those above. */
-    struct Partition
-    {
-      std::vector<std::vector<unsigned int>> branches;
-      std::vector<unsigned int> top;
-    };
-
-    void
-    divide(const unsigned int n_threads);
-
     template <unsigned int n_vectors>
     class Solution;
 
@@ -91,7 +81,7 @@ namespace ACF
 
     std::shared_ptr<const EliminationTree> tree;
     std::vector<Block> blocks;
-    Partition partition;
+    TreePartition partition;
     unsigned int longest_block = 0;
     dealii::AlignedVector<Real> values;
   };
