@@ -186,11 +186,21 @@ namespace ACF
                   const bool finished)
   {
     nlohmann::ordered_json json;
-    json["version"]                 = ACF_VERSION;
-    json["finished"]                = finished;
-    json["steps"]                   = statistics.steps;
-    json["rejected steps"]          = statistics.rejected_steps;
-    json["halvings"]                = statistics.halvings;
+    json["version"]           = ACF_VERSION;
+    json["finished"]          = finished;
+    json["steps"]             = statistics.steps;
+    json["rejected steps"]    = statistics.rejected_steps;
+    json["rejected by error"] = statistics.rejected_by_error;
+    json["rejected by convergence"] =
+      statistics.rejected_steps - statistics.rejected_by_error;
+    json["halvings"]          = statistics.halvings;
+    json["step size changes"] = statistics.step_size_changes;
+    json["step size [s]"]     = {{"min", statistics.min_step_size},
+                                 {"max", statistics.max_step_size}};
+    json["estimated error"]   = statistics.estimated_error;
+    if (statistics.steps > 0)
+      json["iterations per step"] =
+        1. * statistics.newton_iterations / statistics.steps;
     json["corrected tangent steps"] = statistics.corrected_tangent_steps;
     json["exact tangent steps"]     = statistics.exact_tangent_steps;
     json["krylov iterations"]       = statistics.krylov_iterations;
@@ -201,7 +211,8 @@ namespace ACF
     json["factorisations"]          = {{"real", statistics.real_factorizations},
                                        {"complex", statistics.complex_factorizations},
                                        {"single precision",
-                                        statistics.single_factorizations}};
+                                        statistics.single_factorizations},
+                                       {"evicted", statistics.evicted_factors}};
     json["solves"]                  = {{"real", statistics.real_solves},
                                        {"complex", statistics.complex_solves},
                                        {"setup", statistics.setup_solves}};
@@ -259,7 +270,7 @@ namespace ACF
       const PhaseTimer timer(statistics, "start");
       FactorizationCache cache(statistics);
       return initial_state(
-        system, model.start, model.time.step_size, cache, statistics, log);
+        system, model.start, model.time.first_step(), cache, statistics, log);
     }
 
 
@@ -466,7 +477,7 @@ namespace ACF
               make_probe(probe, system);
             check_number_of_modes(system, model.modes.number);
             std::ostringstream log;
-            check_start(system, model.start, model.time.step_size, log);
+            check_start(system, model.start, model.time.first_step(), log);
             print_accuracy_warnings(system, warnings);
             if (!command_line.quiet)
               {

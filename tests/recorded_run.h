@@ -69,8 +69,12 @@ namespace Tests
       std::ostringstream nowhere;
       Progress progress(nowhere, false, model.time.end_time);
       FactorizationCache cache(statistics);
-      const SystemState start = initial_state(
-        system, model.start, model.time.step_size, cache, statistics, nowhere);
+      const SystemState start = initial_state(system,
+                                              model.start,
+                                              model.time.first_step(),
+                                              cache,
+                                              statistics,
+                                              nowhere);
       run_time_loop(
         system, start, model.time, {&recorder}, progress, statistics);
     }

@@ -66,10 +66,29 @@ namespace ACF
 
 
   FactorizationCache::FactorizationCache(Statistics &statistics,
-                                         const FactorPrecision precision)
+                                         const FactorPrecision precision,
+                                         const std::size_t max_bytes)
     : statistics(statistics)
     , precision(precision)
+    , max_bytes(max_bytes)
   {}
+
+
+
+  void
+  FactorizationCache::use(const double step_size)
+  {
+    present_step_size   = step_size;
+    last_use[step_size] = ++n_uses;
+  }
+
+
+
+  bool
+  FactorizationCache::holds(const double step_size) const
+  {
+    return last_use.find(step_size) != last_use.end();
+  }
 
 
 
@@ -85,7 +104,9 @@ namespace ACF
     const void *const kind = is_replaced
                                ? static_cast<const void *>(&body)
                                : static_cast<const void *>(&body.reference());
-    auto &entry = factors[Key(kind, std::real(shift), std::imag(shift))];
+    auto &[entry, step_size] =
+      factors[Key(kind, std::real(shift), std::imag(shift))];
+    step_size = present_step_size;
     if (!entry)
       {
         const PhaseTimer timer(statistics, "factorisation");
@@ -121,6 +142,8 @@ namespace ACF
         statistics.joint_column_bytes += entry->column_bytes();
         statistics.factor_backward_error =
           std::max(statistics.factor_backward_error, cost.backward_error);
+        n_bytes += cost.n_bytes + entry->column_bytes();
+        limit_memory();
       }
     return *entry;
   }
@@ -149,23 +172,48 @@ namespace ACF
 
 
 
-  template <typename Number>
-  void
-  FactorizationCache::drop(Factors<Number> &factors, const Body &body)
+  template <typename Number, typename Condition>
+  unsigned int
+  FactorizationCache::drop(Factors<Number> &factors, const Condition &condition)
   {
+    unsigned int n_dropped = 0;
     for (auto it = factors.begin(); it != factors.end();)
-      if (std::get<0>(it->first) == &body)
+      if (condition(*it))
         {
-          const auto &factor = *it->second;
-          statistics.factor_entries -=
-            it->second->factorization().statistics().n_entries;
-          statistics.factor_bytes -=
-            it->second->factorization().statistics().n_bytes;
+          auto &factor = *it->second.factor;
+          const FactorizationStatistics &cost =
+            factor.factorization().statistics();
+          statistics.factor_entries -= cost.n_entries;
+          statistics.factor_bytes -= cost.n_bytes;
           statistics.joint_column_bytes -= factor.column_bytes();
+          n_bytes -= cost.n_bytes + factor.column_bytes();
           it = factors.erase(it);
+          ++n_dropped;
         }
       else
         ++it;
+    return n_dropped;
+  }
+
+
+
+  void
+  FactorizationCache::limit_memory()
+  {
+    while (n_bytes > max_bytes && last_use.size() > 1)
+      {
+        const auto oldest    = std::min_element(last_use.begin(),
+                                             last_use.end(),
+                                             [](const auto &a, const auto &b) {
+                                               return a.second < b.second;
+                                             });
+        const auto is_oldest = [&](const auto &item) {
+          return item.second.step_size == oldest->first;
+        };
+        statistics.evicted_factors +=
+          drop(real_factors, is_oldest) + drop(complex_factors, is_oldest);
+        last_use.erase(oldest);
+      }
   }
 
 
@@ -184,8 +232,11 @@ namespace ACF
   void
   FactorizationCache::restore_stiffness(const Body &body)
   {
-    drop(real_factors, body);
-    drop(complex_factors, body);
+    const auto is_own = [&](const auto &item) {
+      return std::get<0>(item.first) == &body;
+    };
+    drop(real_factors, is_own);
+    drop(complex_factors, is_own);
     stiffness.erase(&body);
   }
 

@@ -120,6 +120,17 @@ namespace ACF
   {
     if (parameters.newton_tolerance > 0)
       return {parameters.newton_tolerance, 0};
+    if (parameters.tolerance > 0)
+      {
+        // errors of the iteration become errors of velocities when they are
+        // divided by the step size, which act for the rest of the time
+        const double part = equations.step_size() / parameters.end_time;
+        const double error =
+          std::max(least_tolerance,
+                   std::min(1e-9,
+                            newton_share * parameters.tolerance * part * part));
+        return {error, std::max(largest_tolerance, error)};
+      }
     if (expected_error < 0)
       return {largest_tolerance, largest_tolerance};
     const double ratio = equations.step_size() / history.steps[0].size;

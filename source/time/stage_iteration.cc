@@ -75,7 +75,9 @@ namespace ACF
     , tableau(tableau)
     , parameters(parameters)
     , statistics(statistics)
-    , cache(statistics, parameters.factor_precision)
+    , cache(statistics,
+            parameters.factor_precision,
+            static_cast<std::size_t>(1e6 * parameters.factor_memory))
     , acceleration(system, 5)
     , marked(system.bodies().size())
   {
@@ -140,6 +142,7 @@ namespace ACF
       changes = equations.reduced_strain_changes(marked);
     try
       {
+        cache.use(equations.step_size());
         stage_solver->prepare(equations.step_size(),
                               rotations,
                               equations.mean_linearization(),

@@ -78,6 +78,102 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // Sizes of the steps: of a StepController, or with a tolerance of an
+    // ErrorController.
+    class StepSizes
+    {
+    public:
+      explicit StepSizes(const TimeParameters &parameters)
+        : is_controlled(parameters.tolerance > 0)
+        , max_halvings(parameters.max_halvings)
+        , least_step(1e-9 * parameters.end_time)
+        , fixed(parameters.first_step(), parameters.max_halvings)
+        , controlled(parameters.first_step(),
+                     parameters.largest_step(),
+                     parameters.tolerance / parameters.end_time,
+                     2 * parameters.n_stages)
+      {}
+
+      double
+      next() const
+      {
+        return is_controlled ? controlled.step_size() : fixed.step_size();
+      }
+
+      double
+      time() const
+      {
+        return is_controlled ? controlled.time() : fixed.time();
+      }
+
+      // The three that follow: false if the step cannot be repeated.
+      bool
+      fail()
+      {
+        if (!is_controlled)
+          return fixed.halve();
+        controlled.fail();
+        return ++n_failures <= max_halvings;
+      }
+
+      bool
+      allows(const double error) const
+      {
+        return !is_controlled || controlled.allows(error);
+      }
+
+      bool
+      reject(const double error)
+      {
+        controlled.reject(error);
+        return controlled.step_size() > least_step;
+      }
+
+      void
+      accept(const double error, const RadauStepper &stepper)
+      {
+        n_failures = 0;
+        if (is_controlled)
+          controlled.accept(error, [&](const double size) {
+            return stepper.has_factors(size);
+          });
+        else
+          fixed.accept();
+      }
+
+    private:
+      const bool is_controlled;
+      const unsigned int max_halvings;
+      const double least_step;
+      StepController fixed;
+      ErrorController controlled;
+      unsigned int n_failures = 0;
+    };
+
+
+
+    void
+    count_step(const double step_size,
+               const double last_size,
+               const StepReport &report,
+               Statistics &statistics)
+    {
+      const bool is_first = statistics.steps == 0;
+      ++statistics.steps;
+      if (!is_first && step_size != last_size)
+        ++statistics.step_size_changes;
+      statistics.min_step_size =
+        is_first ? step_size : std::min(statistics.min_step_size, step_size);
+      statistics.max_step_size = std::max(statistics.max_step_size, step_size);
+      statistics.max_newton_iterations =
+        std::max(statistics.max_newton_iterations, report.iterations);
+    }
+  } // namespace
+
+
+
   Observer::Observer(const double interval)
     : observation_interval(interval)
   {}
@@ -112,11 +208,11 @@ namespace ACF
                 Statistics &statistics)
   {
     RadauStepper stepper(system, parameters, statistics);
-    StepController controller(parameters.step_size, parameters.max_halvings);
-
-    while (state.time < parameters.end_time - same_time * parameters.step_size)
+    StepSizes sizes(parameters);
+    double last_size = 0;
+    while (state.time < parameters.end_time - same_time * sizes.next())
       {
-        const double step_size = controller.step_size();
+        const double step_size = sizes.next();
         StepReport report;
         {
           const PhaseTimer timer(statistics, "time steps");
@@ -125,7 +221,7 @@ namespace ACF
         if (!report.converged)
           {
             ++statistics.rejected_steps;
-            if (!controller.halve())
+            if (!sizes.fail())
               throw SimulationError(
                 "The step of " + format_number(step_size) + " s at time " +
                 format_number(state.time) + " s failed after " +
@@ -135,15 +231,29 @@ namespace ACF
             ++statistics.halvings;
             continue;
           }
+        if (!sizes.allows(report.local_error))
+          {
+            ++statistics.rejected_steps;
+            ++statistics.rejected_by_error;
+            if (!sizes.reject(report.local_error))
+              throw SimulationError(
+                "The step of " + format_number(step_size) + " s at time " +
+                format_number(state.time) +
+                " s does not reach the Tolerance: its estimated error is " +
+                format_number(report.local_error) +
+                " of the length of a body. The results up to this time are "
+                "kept.");
+            continue;
+          }
 
         stepper.accept(state);
-        controller.accept();
-        state.time = controller.time();
-        ++statistics.steps;
+        sizes.accept(report.local_error, stepper);
+        state.time = sizes.time();
+        count_step(step_size, last_size, report, statistics);
+        if (parameters.tolerance > 0)
+          statistics.estimated_error += report.local_error;
+        last_size = step_size;
         check_constraints(system, state, statistics);
-        statistics.max_newton_iterations =
-          std::max(statistics.max_newton_iterations, report.iterations);
-
         {
           const PhaseTimer timer(statistics, "output");
           for (Observer *const observer : observers)

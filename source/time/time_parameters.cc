@@ -6,6 +6,9 @@
 
 #include <deal.II/base/parameter_handler.h>
 
+#include <algorithm>
+#include <cmath>
+
 namespace ACF
 {
   void
@@ -16,7 +19,7 @@ namespace ACF
                       "Stages s of the Radau IIA method; positions converge "
                       "with order 2s-1, velocities with s, reactions with s-1. "
                       "Units: none.",
-                      Patterns::Integer(2, 3));
+                      Patterns::Integer(1, 3));
     prm.add_parameter("End time",
                       end_time,
                       "Time at which the simulation ends; it starts at zero; "
@@ -26,7 +29,27 @@ namespace ACF
                       Patterns::Double(0));
     prm.add_parameter("Step size",
                       step_size,
-                      "Size of the time steps; required. Units: s.",
+                      "Size of the time steps; required without a Tolerance, "
+                      "with it that of the first step; zero: one that suits "
+                      "the tolerance. Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter("Tolerance",
+                      tolerance,
+                      "Bound on the error of the positions that the time "
+                      "integration has at the End time, relative to the length "
+                      "of the largest body; chooses the step sizes; zero: "
+                      "steps of the same size. Units: none.",
+                      Patterns::Double(0, 0.1));
+    prm.add_parameter("Maximal step size",
+                      max_step_size,
+                      "Largest step that a Tolerance may lead to; zero: a "
+                      "tenth of the End time. Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter("Factor memory",
+                      factor_memory,
+                      "Memory for factorisations of different step sizes; "
+                      "those that were not used for the longest time are "
+                      "dropped. The present ones may need more. Units: MB.",
                       Patterns::Double(0));
     prm.add_parameter(
       "Newton tolerance",
@@ -92,7 +115,8 @@ namespace ACF
                          "a positive number");
     };
     require_positive("End time", end_time);
-    require_positive("Step size", step_size);
+    if (tolerance == 0)
+      require_positive("Step size", step_size);
     if (newton_tolerance > 0 && newton_tolerance < 1e-14)
       throw InputError("Time integration",
                        "Newton tolerance",
@@ -103,5 +127,41 @@ namespace ACF
                        "Step size",
                        "a step larger than the End time",
                        "a positive number not larger than the End time");
+    if (tolerance > 0 && tolerance < 1e-12)
+      throw InputError("Time integration",
+                       "Tolerance",
+                       "a tolerance below round-off",
+                       "0 or a number in [1e-12, 0.1]");
+    if (tolerance == 0 && max_step_size > 0)
+      throw InputError("Time integration",
+                       "Maximal step size",
+                       "a limit of steps of the same size",
+                       "0, or a Tolerance that chooses the steps");
+    if (max_step_size > 0 && step_size > max_step_size)
+      throw InputError("Time integration",
+                       "Step size",
+                       "a step larger than the Maximal step size",
+                       "a number not larger than the Maximal step size");
+  }
+
+
+
+  double
+  TimeParameters::largest_step() const
+  {
+    return max_step_size > 0 ? max_step_size : end_time / 10;
+  }
+
+
+
+  double
+  TimeParameters::first_step() const
+  {
+    if (step_size > 0 || tolerance == 0)
+      return step_size;
+    // for a motion that turns its direction some ten times
+    return std::min(largest_step(),
+                    0.01 * end_time *
+                      std::pow(tolerance, 1. / (2 * n_stages - 1)));
   }
 } // namespace ACF

@@ -17,8 +17,19 @@ namespace ACF
     /** Accepted steps. */
     unsigned long steps = 0;
 
-    /** Trial steps that did not converge. */
-    unsigned long rejected_steps = 0;
+    /** Trial steps that were not accepted; those of them whose iteration had
+     * converged but whose estimated error was too large. */
+    unsigned long rejected_steps    = 0;
+    unsigned long rejected_by_error = 0;
+
+    /** Sizes of accepted steps, s, and how often they changed. */
+    double min_step_size            = 0;
+    double max_step_size            = 0;
+    unsigned long step_size_changes = 0;
+
+    /** Sum of the estimated errors of accepted steps, relative to the length of
+     * the largest body; only with a Tolerance. */
+    double estimated_error = 0;
 
     /** Halvings of the step size. */
     unsigned long halvings = 0;
@@ -46,6 +57,9 @@ namespace ACF
 
     /** Those that are kept in single precision. */
     unsigned long single_factorizations = 0;
+
+    /** Factorisations that were dropped to save memory. */
+    unsigned long evicted_factors = 0;
 
     /** Right-hand sides solved in the time loop. */
     unsigned long real_solves    = 0;

@@ -10,6 +10,7 @@
 
 #include <Eigen/Dense>
 
+#include <limits>
 #include <map>
 #include <memory>
 
@@ -80,16 +81,31 @@ namespace ACF
 
 
   /**
-   * Keeps every factorisation that was ever needed: one per reference
-   * body and shift, in practice one per kind of body and step size. A body
-   * whose stiffness was replaced has factorisations of its own.
+   * Keeps factorisations: one per reference body and shift, in practice one per
+   * kind of body and step size. A body whose stiffness was replaced has
+   * factorisations of its own.
+   *
+   * With a limit of the memory those of the step size that was not used for the
+   * longest time are dropped when a new one would pass it, but never those of
+   * the present step size, even if they pass it alone.
    */
   class FactorizationCache
   {
   public:
+    /** @param max_bytes of the factors and the columns of joints */
     explicit FactorizationCache(
       Statistics &statistics,
-      const FactorPrecision precision = FactorPrecision::double_precision);
+      const FactorPrecision precision = FactorPrecision::double_precision,
+      const std::size_t max_bytes = std::numeric_limits<std::size_t>::max());
+
+    /** The step size, s, that the following calls of get() are about. What they
+     * return is valid until this function is called again. */
+    void
+    use(const double step_size);
+
+    /** Whether there are factorisations for a step size. */
+    bool
+    holds(const double step_size) const;
 
     JointedFactorization<double> &
     get(const Body &body, const double shift);
@@ -115,8 +131,16 @@ namespace ACF
     using Key = std::tuple<const void *, double, double>;
 
     template <typename Number>
-    using Factors =
-      std::map<Key, std::unique_ptr<JointedFactorization<Number>>>;
+    struct Entry
+    {
+      std::unique_ptr<JointedFactorization<Number>> factor;
+
+      /** For which it was needed last. */
+      double step_size;
+    };
+
+    template <typename Number>
+    using Factors = std::map<Key, Entry<Number>>;
 
     template <typename Number>
     JointedFactorization<Number> &
@@ -125,9 +149,14 @@ namespace ACF
                       const Number shift,
                       unsigned long &counter);
 
-    template <typename Number>
+    /** Drops the entries that a condition applies to. */
+    template <typename Number, typename Condition>
+    unsigned int
+    drop(Factors<Number> &factors, const Condition &condition);
+
+    /** Drops old step sizes until there is no more than the limit. */
     void
-    drop(Factors<Number> &factors, const Body &body);
+    limit_memory();
 
     Statistics &statistics;
     const FactorPrecision precision;
@@ -135,6 +164,14 @@ namespace ACF
     /** Of reference bodies. */
     std::map<const ReferenceBody *, std::shared_ptr<const EliminationTree>>
       trees;
+
+    const std::size_t max_bytes;
+    std::size_t n_bytes = 0;
+
+    /** The number of the last call of use(), and for each step size. */
+    double present_step_size = 0;
+    unsigned long n_uses     = 0;
+    std::map<double, unsigned long> last_use;
 
     Factors<double> real_factors;
     Factors<std::complex<double>> complex_factors;

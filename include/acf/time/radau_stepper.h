@@ -28,6 +28,13 @@ namespace ACF
     StepReport
     try_step(const SystemState &state, const double step_size);
 
+    /** Whether a step size needs no new factorisation. */
+    bool
+    has_factors(const double step_size) const
+    {
+      return iteration.has_factors(step_size);
+    }
+
     /** Makes the end of the last tried step the new state. */
     void
     accept(SystemState &state);

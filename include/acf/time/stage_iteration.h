@@ -166,6 +166,13 @@ namespace ACF
     void
     accept();
 
+    /** Whether a step size needs no new factorisation. */
+    bool
+    has_factors(const double step_size) const
+    {
+      return cache.holds(step_size);
+    }
+
   private:
     /** How exactly the iteration linearises the elastic forces. */
     enum class Linearization

@@ -4,6 +4,7 @@
 #ifndef acf_time_time_loop_h
 #define acf_time_time_loop_h
 
+#include <acf/time/error_controller.h>
 #include <acf/time/radau_stepper.h>
 #include <acf/time/step_controller.h>
 
@@ -45,15 +46,16 @@ namespace ACF
 
 
   /**
-   * Steps through time: tries, halves, accepts, and shows the observers the
-   * states at their times, which need not be ends of steps. The last step may
-   * pass the end time; what is shown then ends at the end time.
+   * Steps through time: tries, halves or rejects, accepts, and shows the
+   * observers the states at their times, which need not be ends of steps. The
+   * last step may pass the end time; what is shown then ends at the end time.
    *
    * Multipliers are known for the stages of a step; those at the start of the
    * simulation are extrapolated from the first step.
    *
    * @param state at the start, see initial_state()
-   * @throws SimulationError if a step fails after all halvings, or if repeated
+   * @throws SimulationError if a step fails after all halvings, if the
+   * tolerance is out of reach, or if repeated
    * constraints contradict each other; the observers have then seen everything
    * up to the last accepted step
    */

@@ -22,6 +22,16 @@ namespace ACF
     double end_time  = 0;
     double step_size = 0;
 
+    /** Bound on the error of the positions at the end, relative to the length
+     * of the largest body; 0: steps of a fixed size. */
+    double tolerance = 0;
+
+    /** With a tolerance; 0: a tenth of the end time. s */
+    double max_step_size = 0;
+
+    /** Of the factorisations of different step sizes, MB. */
+    double factor_memory = 4000;
+
     /** Bound on the predicted error of the iteration, relative to the bodies;
      * 0: a part of the estimated error of the step. */
     double newton_tolerance = 0;
@@ -41,6 +51,14 @@ namespace ACF
     /** @throws InputError for values that the patterns cannot exclude */
     void
     check() const;
+
+    /** The largest step, s. */
+    double
+    largest_step() const;
+
+    /** The given one, or one that suits the tolerance, s. */
+    double
+    first_step() const;
   };
 } // namespace ACF
 

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+// Control of the step size by the error, and the memory of the factors.
+
+#include <acf/base/exceptions.h>
+#include <acf/time/error_controller.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <iostream>
+
+#include "pendulum_model.h"
+#include "recorded_run.h"
+
+namespace
+{
+  using namespace Tests;
+
+  const auto no_factors  = [](const double) { return false; };
+  const auto all_factors = [](const double) { return true; };
+
+  std::vector<std::string>
+  with_tolerance(const unsigned int n_stages, const std::string &tolerance)
+  {
+    return {"Time integration/Stages=" + std::to_string(n_stages),
+            "Time integration/Step size=0",
+            "Time integration/End time=0.5",
+            "Time integration/Tolerance=" + tolerance};
+  }
+} // namespace
+
+
+
+TEST(ErrorController, StaysOnTheLattice)
+{
+  ErrorController controller(1e-3, 1., 1e-3, 4);
+  double time = 0;
+  for (unsigned int k = 0; k < 500; ++k)
+    {
+      const double points = 2 * std::log2(controller.step_size() / 1e-3);
+      EXPECT_NEAR(points, std::round(points), 1e-12);
+      // an error that goes up and down, of the order 4
+      const double error = 1e-7 * std::pow(controller.step_size() / 1e-3, 4) *
+                           std::pow(10., 2 * std::sin(0.05 * k));
+      if (controller.allows(error))
+        {
+          time += controller.step_size();
+          controller.accept(error, no_factors);
+          EXPECT_NEAR(controller.time(), time, 1e-12 * time);
+        }
+      else
+        {
+          const double size = controller.step_size();
+          controller.reject(error);
+          EXPECT_LE(controller.step_size(), size * 0.71);
+          EXPECT_GE(controller.step_size(), size * 0.249);
+        }
+    }
+}
+
+
+
+TEST(ErrorController, PrefersSizesWithFactors)
+{
+  const auto steps_to_rise = [](const auto &has_factors, const double error) {
+    ErrorController controller(1e-3, 1., 1e-3, 4);
+    unsigned int n = 0;
+    for (; controller.step_size() == 1e-3 && n < 100; ++n)
+      controller.accept(error, has_factors);
+    EXPECT_LE(controller.step_size(), 2e-3 * (1 + 1e-12));
+    return n;
+  };
+  // 0.9 (1e-6 / e)^(1/3) times the step is allowed: 1.53 and 4.2
+  EXPECT_EQ(steps_to_rise(all_factors, 2e-7), 2U);
+  EXPECT_EQ(steps_to_rise(no_factors, 2e-7), 8U);
+  EXPECT_EQ(steps_to_rise(all_factors, 1e-8), 2U);
+  EXPECT_EQ(steps_to_rise(no_factors, 1e-8), 3U);
+  EXPECT_EQ(steps_to_rise(all_factors, 5e-7), 100U);
+}
+
+
+
+TEST(ErrorController, KeepsToTheLargestStep)
+{
+  ErrorController controller(1e-3, 5e-3, 1e-3, 4);
+  for (unsigned int k = 0; k < 100; ++k)
+    controller.accept(0., no_factors);
+  EXPECT_DOUBLE_EQ(controller.step_size(), 4e-3);
+}
+
+
+
+TEST(ErrorController, StepsThatFailAreHalved)
+{
+  ErrorController controller(1e-3, 1., 1e-3, 4);
+  controller.fail();
+  EXPECT_DOUBLE_EQ(controller.step_size(), 5e-4);
+  EXPECT_EQ(controller.time(), 0.);
+}
+
+
+
+TEST(ErrorController, TimesDoNotDrift)
+{
+  ErrorController controller(1e-3 / std::sqrt(2.), 1e-3 / std::sqrt(2.), 1., 4);
+  for (unsigned int k = 0; k < 1000000; ++k)
+    controller.accept(0., no_factors);
+  EXPECT_DOUBLE_EQ(controller.time(), 1e6 * (1e-3 / std::sqrt(2.)));
+}
+
+
+
+// One stage: order 1. The positions of the pendulum after 0.1 s.
+TEST(Tolerance, OneStageHasTheOrderOne)
+{
+  RecordedRun reference(pendulum_model("hexahedron", "1, 4, 1"),
+                        0.1,
+                        {"Time integration/Stages=3",
+                         "Time integration/End time=0.1",
+                         "Time integration/Step size=2.5e-4"});
+  reference.run();
+  std::vector<double> errors;
+  for (const std::string size : {"2e-3", "1e-3", "5e-4"})
+    {
+      RecordedRun run(pendulum_model("hexahedron", "1, 4, 1"),
+                      0.1,
+                      {"Time integration/Stages=1",
+                       "Time integration/End time=0.1",
+                       "Time integration/Step size=" + size});
+      run.run();
+      EXPECT_EQ(run.statistics.complex_factorizations, 0U);
+      EXPECT_EQ(run.statistics.real_factorizations, 1U);
+      errors.push_back(nodal_difference(run.last().positions[0],
+                                        reference.last().positions[0]));
+    }
+  std::cout << "errors " << errors[0] << ' ' << errors[1] << ' ' << errors[2]
+            << std::endl;
+  EXPECT_NEAR(orders(errors).back(), 1., 0.2);
+}
+
+
+
+TEST(Tolerance, FactorsAreDroppedAndMadeAgain)
+{
+  auto overrides = with_tolerance(2, "1e-3");
+  RecordedRun unlimited(pendulum_model("hexahedron", "1, 8, 1"),
+                        0.5,
+                        overrides);
+  unlimited.run();
+  overrides.push_back("Time integration/Factor memory=0");
+  RecordedRun limited(pendulum_model("hexahedron", "1, 8, 1"), 0.5, overrides);
+  limited.run();
+
+  const Statistics &all = unlimited.statistics, &one = limited.statistics;
+  std::cout << all.complex_factorizations << " factorisations, "
+            << all.factor_bytes << " B; with no memory for old ones "
+            << one.complex_factorizations << ", " << one.evicted_factors
+            << " dropped, " << one.factor_bytes << " B" << std::endl;
+  EXPECT_EQ(all.evicted_factors, 0U);
+  EXPECT_EQ(one.complex_factorizations, one.evicted_factors + 1);
+  EXPECT_EQ(one.factor_bytes * all.complex_factorizations, all.factor_bytes);
+  EXPECT_LT(nodal_difference(unlimited.last().positions[0],
+                             limited.last().positions[0]),
+            1e-3);
+}
+
+
+
+TEST(Tolerance, WrongCombinationsAreErrors)
+{
+  const auto read = [](const std::vector<std::string> &overrides) {
+    RecordedRun run(pendulum_model("hexahedron", "1, 4, 1"), 0.1, overrides);
+  };
+  EXPECT_THROW(read({"Time integration/Step size=0"}), InputError);
+  EXPECT_THROW(read({"Time integration/Tolerance=1e-14"}), InputError);
+  EXPECT_THROW(read({"Time integration/Maximal step size=1e-2"}), InputError);
+  EXPECT_THROW(read({"Time integration/Tolerance=1e-3",
+                     "Time integration/Step size=2e-2",
+                     "Time integration/Maximal step size=1e-2"}),
+               InputError);
+}
