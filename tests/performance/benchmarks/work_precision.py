@@ -105,14 +105,14 @@ TOLERANCES = ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7"]
 
 
 class Study:
-    """The runs of one model."""
+    """The runs of one model; rows of the table, which is written after each run."""
 
-    def __init__(self, bench, name, model):
+    def __init__(self, bench, name, model, rows):
         self.bench = bench
         self.name = name
         self.model = model
         self.references = {}
-        self.rows = []
+        self.rows = rows
 
     def settings(self, strain, step_size):
         common = {"Time integration/End time": self.model["end time"],
@@ -154,6 +154,8 @@ class Study:
                "factorisations": run.factorizations(), "repetitions": run.repetitions,
                "note": more.get("note", "")}
         self.rows.append(row)
+        self.bench.write_table("work_precision.csv", self.rows)
+        self.bench.write_table("work_precision_ratios.csv", ratios(self.rows))
         self.bench.say(f"{self.name}, {strain}, {method}, {control} {value:.3g}: "
                        f"{row['error [m]'] or math.nan:.2g} m, {row['steps [s]']:.3g} s")
 
@@ -284,13 +286,8 @@ def run(bench):
     for name, model in models(bench.quick).items():
         if bench.models and name not in bench.models:
             continue
-        study = Study(bench, name, model)
+        study = Study(bench, name, model, rows)
         study.run_program()
-        try:
-            study.run_implicit_baselines()
-            if model["explicit"]:
-                study.run_explicit()
-        finally:
-            rows += study.rows
-            bench.write_table("work_precision.csv", rows)
-            bench.write_table("work_precision_ratios.csv", ratios(rows))
+        study.run_implicit_baselines()
+        if model["explicit"]:
+            study.run_explicit()
