@@ -4,6 +4,7 @@
 #include <acf/mechanics/body_operators.h>
 
 #include <deal.II/base/memory_consumption.h>
+#include <deal.II/base/work_stream.h>
 
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
@@ -65,39 +66,137 @@ namespace ACF
 
 
 
+    // Values of the shape functions on a cell, one object per thread.
+    struct CellValues
+    {
+      CellValues(const BodyDiscretization &body,
+                 const Quadrature<dim> &quadrature,
+                 const UpdateFlags flags)
+        : body(body)
+        , values(body.mesh().mapping(),
+                 body.scalar_element(),
+                 quadrature,
+                 flags)
+      {}
+
+      CellValues(const CellValues &other)
+        : CellValues(other.body,
+                     other.values.get_quadrature(),
+                     other.values.get_update_flags())
+      {}
+
+      const BodyDiscretization &body;
+      FEValues<dim> values;
+    };
+
+
+
+    // What a cell adds; entries are numbered i n + j for n nodes.
+    template <typename Entry>
+    struct CellMatrix
+    {
+      std::vector<unsigned int> nodes;
+      std::vector<Entry> entries;
+
+      // of the gradients of the shape functions
+      std::vector<Vector3> integrals;
+      double volume = 0;
+    };
+
+
+
+    // Integrates cells in parallel, and adds them one after the other, so that
+    // sums do not depend on threads.
+    template <typename Entry, typename Integrate, typename Add>
+    void
+    for_all_cells(const BodyDiscretization &body,
+                  const Quadrature<dim> &quadrature,
+                  const UpdateFlags flags,
+                  const Integrate &integrate,
+                  const Add &add)
+    {
+      CellMatrix<Entry> matrix;
+      matrix.nodes.resize(body.scalar_element().dofs_per_cell);
+      WorkStream::run(
+        body.dof_handler().begin_active(),
+        body.dof_handler().end(),
+        [&](const DoFHandler<dim>::active_cell_iterator &cell,
+            CellValues &scratch,
+            CellMatrix<Entry> &result) {
+          scratch.values.reinit(
+            typename Triangulation<dim>::active_cell_iterator(cell));
+          body.get_nodes(cell, result.nodes);
+          integrate(scratch.values, result);
+        },
+        add,
+        CellValues(body, quadrature, flags),
+        matrix);
+    }
+
+
+
     void
     assemble_mass(const BodyDiscretization &body,
                   const double density,
                   ScalarNodeMatrix &mass_matrix)
     {
-      FEValues<dim> values(body.mesh().mapping(),
-                           body.scalar_element(),
-                           body.mesh().cell_quadrature(4),
-                           update_values | update_JxW_values);
-      const unsigned int n = values.dofs_per_cell;
-      std::vector<unsigned int> nodes(n);
-
-      for (const auto &cell : body.dof_handler().active_cell_iterators())
-        {
-          values.reinit(
-            typename Triangulation<dim>::active_cell_iterator(cell));
-          body.get_nodes(cell, nodes);
+      for_all_cells<double>(
+        body,
+        body.mesh().cell_quadrature(4),
+        update_values | update_JxW_values,
+        [&](const FEValues<dim> &values, CellMatrix<double> &cell) {
+          const unsigned int n = cell.nodes.size();
+          cell.entries.assign(n * n, 0.);
           for (unsigned int i = 0; i < n; ++i)
             for (unsigned int j = 0; j < n; ++j)
-              {
-                double entry = 0;
-                for (const unsigned int q : values.quadrature_point_indices())
-                  entry += values.shape_value(i, q) * values.shape_value(j, q) *
-                           values.JxW(q);
-                mass_matrix.add(nodes[i], nodes[j], density * entry);
-              }
-        }
+              for (const unsigned int q : values.quadrature_point_indices())
+                cell.entries[i * n + j] += density * values.shape_value(i, q) *
+                                           values.shape_value(j, q) *
+                                           values.JxW(q);
+        },
+        [&](const CellMatrix<double> &cell) {
+          const unsigned int n = cell.nodes.size();
+          for (unsigned int i = 0; i < n; ++i)
+            for (unsigned int j = 0; j < n; ++j)
+              mass_matrix.add(cell.nodes[i],
+                              cell.nodes[j],
+                              cell.entries[i * n + j]);
+        });
     }
 
 
 
     // A_ab = int lambda grad(a) x grad(b) + mu grad(b) x grad(a)
     //            + mu grad(a) . grad(b) I
+    Matrix3
+    stiffness_block(const FEValues<dim> &values,
+                    const Material &material,
+                    const unsigned int a,
+                    const unsigned int b)
+    {
+      const double lambda = material.lambda();
+      const double mu     = material.mu();
+      Matrix3 block;
+      for (const unsigned int q : values.quadrature_point_indices())
+        {
+          const Vector3 &grad_a = values.shape_grad(a, q);
+          const Vector3 &grad_b = values.shape_grad(b, q);
+          const double dV       = values.JxW(q);
+          const double laplace  = mu * (grad_a * grad_b) * dV;
+          for (unsigned int c = 0; c < dim; ++c)
+            {
+              for (unsigned int d = 0; d < dim; ++d)
+                block[c][d] += (lambda * grad_a[c] * grad_b[d] +
+                                mu * grad_b[c] * grad_a[d]) *
+                               dV;
+              block[c][c] += laplace;
+            }
+        }
+      return block;
+    }
+
+
+
     void
     assemble_stiffness(const BodyDiscretization &body,
                        const Material &material,
@@ -105,51 +204,39 @@ namespace ACF
                        NodalVector &averaging_vectors,
                        double &volume)
     {
-      FEValues<dim> values(body.mesh().mapping(),
-                           body.scalar_element(),
-                           body.mesh().cell_quadrature(
-                             body.mesh().is_simplex() ? 2 : 4),
-                           update_gradients | update_JxW_values);
-      const unsigned int n = values.dofs_per_cell;
-      std::vector<unsigned int> nodes(n);
-      const double lambda = material.lambda();
-      const double mu     = material.mu();
-
-      for (const auto &cell : body.dof_handler().active_cell_iterators())
-        {
-          values.reinit(
-            typename Triangulation<dim>::active_cell_iterator(cell));
-          body.get_nodes(cell, nodes);
+      for_all_cells<Matrix3>(
+        body,
+        body.mesh().cell_quadrature(body.mesh().is_simplex() ? 2 : 4),
+        update_gradients | update_JxW_values,
+        [&](const FEValues<dim> &values, CellMatrix<Matrix3> &cell) {
+          const unsigned int n = cell.nodes.size();
+          cell.volume          = 0;
+          cell.integrals.assign(n, Vector3());
           for (const unsigned int q : values.quadrature_point_indices())
             {
-              volume += values.JxW(q);
+              cell.volume += values.JxW(q);
               for (unsigned int i = 0; i < n; ++i)
-                for (unsigned int c = 0; c < dim; ++c)
-                  averaging_vectors[dim * nodes[i] + c] +=
-                    values.shape_grad(i, q)[c] * values.JxW(q);
+                cell.integrals[i] += values.JxW(q) * values.shape_grad(i, q);
             }
+          cell.entries.resize(n * n);
           for (unsigned int i = 0; i < n; ++i)
             for (unsigned int j = 0; j < n; ++j)
-              {
-                Matrix3 block;
-                for (const unsigned int q : values.quadrature_point_indices())
-                  {
-                    const Vector3 &grad_a = values.shape_grad(i, q);
-                    const Vector3 &grad_b = values.shape_grad(j, q);
-                    const double dV       = values.JxW(q);
-                    const double laplace  = mu * (grad_a * grad_b) * dV;
-                    for (unsigned int c = 0; c < dim; ++c)
-                      {
-                        for (unsigned int d = 0; d < dim; ++d)
-                          block[c][d] += (lambda * grad_a[c] * grad_b[d] +
-                                          mu * grad_b[c] * grad_a[d]) *
-                                         dV;
-                        block[c][c] += laplace;
-                      }
-                  }
-                stiffness_matrix.add(nodes[i], nodes[j], block);
-              }
-        }
+              cell.entries[i * n + j] = stiffness_block(values, material, i, j);
+        },
+        [&](const CellMatrix<Matrix3> &cell) {
+          const unsigned int n = cell.nodes.size();
+          volume += cell.volume;
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              for (unsigned int c = 0; c < dim; ++c)
+                averaging_vectors[dim * cell.nodes[i] + c] +=
+                  cell.integrals[i][c];
+              for (unsigned int j = 0; j < n; ++j)
+                stiffness_matrix.add(cell.nodes[i],
+                                     cell.nodes[j],
+                                     cell.entries[i * n + j]);
+            }
+        });
       averaging_vectors /= volume;
     }
 

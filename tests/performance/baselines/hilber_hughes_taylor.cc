@@ -156,13 +156,16 @@ namespace Baselines
         statistics.max_newton_iterations =
           std::max(statistics.max_newton_iterations, k);
 
+        // an automatic tolerance is one of the program's own method
+        const double tolerance =
+          parameters.newton_tolerance > 0 ? parameters.newton_tolerance : 1e-10;
         const double correction = norm(d);
         if (k > 1)
           newton_constant = correction / (last * last);
         last = correction;
         if (k >= least_iterations &&
-            (correction == 0 || newton_constant * correction * correction <=
-                                  parameters.newton_tolerance))
+            (correction == 0 ||
+             newton_constant * correction * correction <= tolerance))
           break;
         if (k == parameters.max_newton_iterations || !std::isfinite(correction))
           throw SimulationError("Newton's method does not converge at time " +
