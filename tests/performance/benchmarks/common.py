@@ -74,7 +74,8 @@ class Bench:
         """The standard output of a program of the build."""
         done = subprocess.run([str(word) for word in command], env=self.environment, text=True,
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, check=False)
-        message = (done.stderr.strip().splitlines() or [""])[-1]
+        message = (done.stderr.strip().splitlines() or
+                   [f"{command[0]} ended with the status {done.returncode}"])[-1]
         if done.returncode == 2:
             raise Unsupported(message)
         if done.returncode != 0:

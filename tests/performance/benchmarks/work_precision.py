@@ -293,4 +293,7 @@ def run(bench):
         study.run_program()
         study.run_implicit_baselines()
         if model["explicit"]:
-            study.run_explicit()
+            try:
+                study.run_explicit()
+            except Failed as error:
+                bench.say(f"{name}, explicit: {error}")
