@@ -35,7 +35,9 @@ namespace ACF
           else
             observer.observe(stepper.interpolate(time));
           observer.advance();
-          if (observer.interval() == 0 && time > state.time - step_size / 2)
+          // without an interval the next time would be the same again
+          if (observer.interval() == 0 &&
+              time > end - 2 * same_time * step_size)
             break;
         }
     }

@@ -82,6 +82,11 @@ expect_status 0 --output-directory half "${no_vtu[@]}" --set 'Time integration/S
   --set "$(until_time 0.0105)" "$pendulum"
 check 'probes between ends of steps' compare 5e-7 half/probes.csv dense/probes.csv
 
+# An end in the first half of a step: one row per step, and one at the end.
+expect_status 0 --output-directory early "${no_vtu[@]}" --set "$(until_time 0.0032)" "$pendulum"
+check "times with an end within a step: $(cut -d, -f1 early/probes.csv | tr '\n' ' ')" \
+  [ "$(cut -d, -f1 early/probes.csv | tail -n +2 | tr '\n' ' ')" = '0 0.001 0.002 0.003 0.0032 ' ]
+
 # --- the same again ---
 
 expect_status 0 --threads 2 --quiet --output-directory again dense/used_parameters.prm
