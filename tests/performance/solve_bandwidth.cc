@@ -4,12 +4,12 @@
 // How close solves with a cached factor come to the bandwidth of the memory, as
 // comma-separated values. A solve reads the factor twice, forward and backward;
 // nothing else is of its size. The streaming bandwidth is that of the sum of an
-// array, measured before and after each factor, the best of all; the array is
-// larger than any cache. Factors that fit into a cache may pass it. Bodies: the
+// array that is larger than any cache, measured before each solve. Factors that
+// fit into a cache may pass it. Bodies: the
 // blade of the pendulum (prm/pendulum) and a cube, tetrahedra; the complex
-// matrix of two stages for steps of 1 ms. Times are medians.
+// matrix of two stages for steps of 1 ms. Figures are medians.
 //
-// Usage: solve_bandwidth [--quick]
+// Usage: solve_bandwidth [--quick | THREADS]
 
 #include <acf/model.h>
 
@@ -76,33 +76,28 @@ namespace
       , n_threads(n_threads)
     {}
 
-    /** The best so far, bytes per second. */
+    /** Bytes per second. */
     double
-    measure()
+    measure() const
     {
-      for (unsigned int k = 0; k < 3; ++k)
-        {
-          std::vector<double> sums(n_threads);
-          const double time = seconds([&]() {
-            std::vector<std::thread> threads;
-            const std::size_t n = values.size() / n_threads;
-            for (unsigned int t = 0; t < n_threads; ++t)
-              threads.emplace_back(
-                [&, t]() { sums[t] = sum(values.data() + t * n, n); });
-            for (std::thread &thread : threads)
-              thread.join();
-          });
-          for (const double part : sums)
-            AssertThrow(part > 0, ExcInternalError()); // the sum is needed
-          best = std::max(best, values.size() * sizeof(double) / time);
-        }
-      return best;
+      std::vector<double> sums(n_threads);
+      const double time = seconds([&]() {
+        std::vector<std::thread> threads;
+        const std::size_t n = values.size() / n_threads;
+        for (unsigned int t = 0; t < n_threads; ++t)
+          threads.emplace_back(
+            [&, t]() { sums[t] = sum(values.data() + t * n, n); });
+        for (std::thread &thread : threads)
+          thread.join();
+      });
+      for (const double part : sums)
+        AssertThrow(part > 0, ExcInternalError()); // the sum is needed
+      return values.size() * sizeof(double) / time;
     }
 
   private:
     std::vector<double> values;
     const unsigned int n_threads;
-    double best = 0;
   };
 
 
@@ -128,32 +123,39 @@ namespace
   measure(const std::string &kind,
           const std::string &cells,
           const unsigned int n_solves,
-          StreamingBandwidth &streaming)
+          const StreamingBandwidth &streaming)
   {
     const Model model =
       read_model(ParameterFile::from_text(model_text(kind, cells)));
     const MultibodySystem system(model.system, model.directory);
     const Body &body = system.bodies()[0];
-    Statistics statistics;
-    FactorizationCache cache(statistics);
     const std::complex<double> shift(2e6, 4e6 * std::sqrt(2.));
-    auto &factor = cache.get(body, shift).factorization();
-
-    streaming.measure();
-    std::vector<std::complex<double>> x(body.operators().n_unknowns());
-    std::vector<double> times;
-    for (unsigned int k = 0; k < n_solves; ++k)
+    for (const auto precision :
+         {FactorPrecision::double_precision, FactorPrecision::single_precision})
       {
-        std::fill(x.begin(), x.end(), 1.);
-        times.push_back(seconds([&]() { factor.solve(x.data()); }));
+        Statistics statistics;
+        FactorizationCache cache(statistics, precision);
+        auto &factor = cache.get(body, shift).factorization();
+        std::vector<std::complex<double>> x(body.operators().n_unknowns());
+        std::vector<double> times, bandwidths, shares;
+        for (unsigned int k = 0; k < n_solves; ++k)
+          {
+            // in turn, as other users of the machine's memory come and go
+            bandwidths.push_back(streaming.measure());
+            std::fill(x.begin(), x.end(), 1.);
+            times.push_back(seconds([&]() { factor.solve(x.data()); }));
+            shares.push_back(2. * statistics.factor_bytes / times.back() /
+                             bandwidths.back());
+          }
+        std::cout << kind << ',' << x.size() << ','
+                  << MultithreadInfo::n_threads() << ','
+                  << (precision == FactorPrecision::double_precision ? "double"
+                                                                     : "single")
+                  << ',' << statistics.factor_bytes << ',' << median(times)
+                  << ',' << 2e-9 * statistics.factor_bytes / median(times)
+                  << ',' << 1e-9 * median(bandwidths) << ',' << median(shares)
+                  << std::endl;
       }
-    const double bandwidth = streaming.measure();
-    const double time      = median(times);
-    const double rate      = 2. * statistics.factor_bytes / time;
-    std::cout << kind << ',' << x.size() << ',' << MultithreadInfo::n_threads()
-              << ',' << statistics.factor_bytes << ',' << time << ','
-              << 1e-9 * rate << ',' << 1e-9 * bandwidth << ','
-              << rate / bandwidth << std::endl;
   }
 } // namespace
 
@@ -163,13 +165,15 @@ int
 main(int argc, char **argv)
 {
   const bool quick = (argc > 1 && std::string(argv[1]) == "--quick");
+  if (argc > 1 && !quick)
+    MultithreadInfo::set_thread_limit(std::stoi(argv[1]));
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
 
   // several times the largest last-level caches
   StreamingBandwidth streaming(quick ? 1u << 24 : 1u << 30,
                                MultithreadInfo::n_threads());
-  std::cout << "body,unknowns,threads,factor memory [B],solve [s],"
+  std::cout << "body,unknowns,threads,precision,factor memory [B],solve [s],"
                "read [GB/s],streaming [GB/s],share"
             << std::endl;
   if (quick)
