@@ -150,6 +150,11 @@ namespace ACF
 
 
 
+    // Unknowns of a front for which threads of the BLAS pay.
+    constexpr std::size_t large_front = 1000;
+
+
+
     // Factorises the supernodes of a tree, those of one branch one after the
     // other.
     template <typename Number>
@@ -164,8 +169,8 @@ namespace ACF
         , partition(partition)
         , matrix(matrix)
         , sink(sink)
-        , for_top(tree.supernodes().size())
         , children(tree.supernodes().size())
+        , for_top(tree.supernodes().size())
       {
         for (unsigned int s = 0; s < tree.supernodes().size(); ++s)
           if (tree.supernodes()[s].parent != EliminationTree::none)
@@ -205,7 +210,13 @@ namespace ACF
                              supernode,
                              front);
                 }
+            const bool threads_help =
+              partition.is_top[s] && front.size() >= large_front;
+            if (threads_help)
+              openblas_set_num_threads(MultithreadInfo::n_threads());
             front.eliminate(k);
+            if (threads_help)
+              openblas_set_num_threads(1);
             sink(s, front.column(0), front.size());
 
             const unsigned int parent = supernode.parent;
@@ -335,9 +346,9 @@ namespace ACF
     const unsigned int n_threads  = MultithreadInfo::n_threads();
     const TreePartition partition = divide_tree(tree, n_threads);
     Multifrontal<Number> multifrontal(tree, partition, matrix, sink);
-    // threads of the BLAS only where there are no branches left
-    if (n_threads > 1)
-      openblas_set_num_threads(1);
+    // Threads of the BLAS wait for each other in every product, long if the
+    // machine has other work: only for large fronts above the branches.
+    openblas_set_num_threads(1);
     std::vector<std::string> failures(partition.branches.size());
     run_tasks(partition.branches.size(), [&](const unsigned int branch) {
       try
@@ -349,8 +360,6 @@ namespace ACF
           failures[branch] = error.what();
         }
     });
-    if (n_threads > 1)
-      openblas_set_num_threads(n_threads);
     for (const std::string &failure : failures)
       if (!failure.empty())
         throw SimulationError(failure);
