@@ -5,10 +5,20 @@
 
 #include <deal.II/base/multithread_info.h>
 
+#include <algorithm>
+
 #include <tbb/parallel_for.h>
 
 namespace ACF
 {
+  namespace
+  {
+    // Numbers of nodes or unknowns that are worth a thread.
+    constexpr std::size_t smallest_range = 4096;
+  } // namespace
+
+
+
   void
   run_tasks(const unsigned int n_tasks,
             const std::function<void(unsigned int)> &task)
@@ -18,5 +28,28 @@ namespace ACF
         task(i);
     else
       tbb::parallel_for(0U, n_tasks, task, tbb::simple_partitioner());
+  }
+
+
+
+  unsigned int
+  n_ranges(const std::size_t n)
+  {
+    return std::max<std::size_t>(
+      1,
+      std::min<std::size_t>(n / smallest_range,
+                            dealii::MultithreadInfo::n_threads()));
+  }
+
+
+
+  void
+  run_ranges(const std::size_t n,
+             const std::function<void(std::size_t, std::size_t)> &range)
+  {
+    const unsigned int n_parts = n_ranges(n);
+    run_tasks(n_parts, [&](const unsigned int part) {
+      range(n * part / n_parts, n * (part + 1) / n_parts);
+    });
   }
 } // namespace ACF

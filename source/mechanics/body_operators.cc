@@ -51,17 +51,18 @@ namespace ACF
     make_node_graph(const BodyDiscretization &body)
     {
       const DynamicSparsityPattern pattern = node_couplings(body);
-      const auto graph                     = std::make_shared<NodeGraph>();
-      graph->row_start.reserve(body.n_nodes() + 1);
-      graph->column.reserve(pattern.n_nonzero_elements());
-      graph->row_start.push_back(0);
+      std::vector<std::size_t> row_start{0};
+      std::vector<unsigned int> column;
+      row_start.reserve(body.n_nodes() + 1);
+      column.reserve(pattern.n_nonzero_elements());
       for (unsigned int a = 0; a < body.n_nodes(); ++a)
         {
           for (auto it = pattern.begin(a); it != pattern.end(a); ++it)
-            graph->column.push_back(it->column());
-          graph->row_start.push_back(graph->column.size());
+            column.push_back(it->column());
+          row_start.push_back(column.size());
         }
-      return graph;
+      return std::make_shared<NodeGraph>(std::move(row_start),
+                                         std::move(column));
     }
 
 

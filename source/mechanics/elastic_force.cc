@@ -52,21 +52,21 @@ namespace ACF
 
   bool
   internal_forces(const Body &body,
-                  const std::vector<NodalVector> &positions,
-                  const std::vector<NodalVector> &velocities,
-                  std::vector<NodalVector> &forces)
+                  const std::vector<const NodalVector *> &positions,
+                  const std::vector<const NodalVector *> &velocities,
+                  const std::vector<NodalVector *> &forces,
+                  std::vector<NodalVector> &scratch)
   {
     if (!body.is_damped() && body.strain_measure() == StrainMeasure::reduced)
-      return reduced_strain_forces(body.operators(),
-                                   body.rotation_measure(),
-                                   positions,
-                                   forces);
-    NodalVector scratch(body.operators().n_unknowns());
+      return reduced_strain_forces(
+        body.operators(), body.rotation_measure(), positions, forces, scratch);
+    if (scratch.empty())
+      scratch.emplace_back(body.operators().n_unknowns());
     for (unsigned int i = 0; i < positions.size(); ++i)
       if (!(body.is_damped()
               ? damped_force(
-                  body, positions[i], velocities[i], forces[i], scratch)
-              : elastic_force(body, positions[i], forces[i], scratch)
+                  body, *positions[i], *velocities[i], *forces[i], scratch[0])
+              : elastic_force(body, *positions[i], *forces[i], scratch[0])
                   .has_value()))
         return false;
     return true;

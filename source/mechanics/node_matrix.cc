@@ -1,159 +1,358 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/parallel.h>
+#include <acf/base/processor.h>
 #include <acf/mechanics/node_matrix.h>
 
+#include <deal.II/base/aligned_vector.h>
 #include <deal.II/base/memory_consumption.h>
-#include <deal.II/base/parallel.h>
 
 #include <algorithm>
-#include <array>
 
 namespace ACF
 {
   namespace
   {
-    // Rows that one task of the matrix-vector products takes at least.
-    constexpr unsigned int grain_size = 512;
+    // Nodal values of one vector, padded, and of two.
+    typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
+    typedef double Eight
+      __attribute__((vector_size(64), aligned(8), may_alias));
 
-    template <typename RowRange>
-    void
-    for_all_rows(const unsigned int n_rows, const RowRange &range)
+    // How n vectors are kept for a product: node by node, n_groups times Lanes.
+    template <unsigned int n>
+    struct Layout
     {
-      parallel::apply_to_subranges(0U, n_rows, range, grain_size);
+      using Lanes                            = Eight;
+      static constexpr unsigned int n_groups = (n + 1) / 2;
+      static constexpr unsigned int n_lanes  = 8 * n_groups;
+    };
+
+    template <>
+    struct Layout<1>
+    {
+      using Lanes                            = Four;
+      static constexpr unsigned int n_groups = 1;
+      static constexpr unsigned int n_lanes  = 4;
+    };
+
+    ACF_INLINE Four
+    load(const double *const p, Four)
+    {
+      return *reinterpret_cast<const Four *>(p);
+    }
+
+    ACF_INLINE Eight
+    load(const double *const p, Eight)
+    {
+      return *reinterpret_cast<const Eight *>(p);
+    }
+
+    // Component j of each vector at its three places.
+    template <int j>
+    ACF_INLINE Four
+    splat(const Four &x)
+    {
+      return __builtin_shufflevector(x, x, j, j, j, j);
+    }
+
+    template <int j>
+    ACF_INLINE Eight
+    splat(const Eight &x)
+    {
+      return __builtin_shufflevector(
+        x, x, j, j, j, j, 4 + j, 4 + j, 4 + j, 4 + j);
+    }
+
+    // Column j of the block at p for each vector.
+    ACF_INLINE Four
+    block_column(const double *const p, const unsigned int j, Four)
+    {
+      return Four{p[j], p[3 + j], p[6 + j], 0};
+    }
+
+    ACF_INLINE Eight
+    block_column(const double *const p, const unsigned int j, Eight)
+    {
+      const Eight A = load(p + j, Eight());
+      return __builtin_shufflevector(A, A, 0, 3, 6, 6, 0, 3, 6, 6);
+    }
+
+    // Row i.
+    ACF_INLINE Four
+    block_row(const double *const p, const unsigned int i, Four)
+    {
+      return load(p + 3 * i, Four());
+    }
+
+    ACF_INLINE Eight
+    block_row(const double *const p, const unsigned int i, Eight)
+    {
+      const Four row = load(p + 3 * i, Four());
+      return __builtin_shufflevector(row, row, 0, 1, 2, 3, 0, 1, 2, 3);
     }
 
 
 
-    // Some rows of a product with n vectors.
-    struct ScalarRows
+    // Some rows of a product.
+    struct Rows
     {
       const NodeGraph &graph;
-      const std::vector<double> &values;
+      const double *values;
+      std::size_t begin, end;
+      const double *x;
 
-      template <std::size_t n>
-      void
-      multiply_row(const unsigned int a,
-                   const std::array<const double *, n> &x,
-                   double (&sum)[n][3]) const
-      {
-        for (std::size_t e = graph.row_start[a]; e < graph.row_start[a + 1];
-             ++e)
-          {
-            const std::size_t b = 3 * graph.column[e];
-            const double m_ab   = values[e];
-            for (unsigned int v = 0; v < n; ++v)
-              for (unsigned int i = 0; i < 3; ++i)
-                sum[v][i] += m_ab * x[v][b + i];
-          }
-      }
+      // of the nodes from begin on
+      double *y;
     };
 
 
 
-    struct BlockRows
+    // With A_ab also A_ba = A_ab^T.
+    template <unsigned int n>
+    ACF_INLINE void
+    multiply_blocks(const Rows &rows)
     {
-      const NodeGraph &graph;
-      const std::vector<double> &values;
-
-      template <std::size_t n>
-      void
-      multiply_row(const unsigned int a,
-                   const std::array<const double *, n> &x,
-                   double (&sum)[n][3]) const
-      {
-        const double *A_ab = &values[9 * graph.row_start[a]];
-        for (std::size_t e = graph.row_start[a]; e < graph.row_start[a + 1];
-             ++e, A_ab += 9)
-          {
-            const std::size_t b = 3 * graph.column[e];
-            for (unsigned int v = 0; v < n; ++v)
-              for (unsigned int i = 0; i < 3; ++i)
-                sum[v][i] += A_ab[3 * i] * x[v][b] +
-                             A_ab[3 * i + 1] * x[v][b + 1] +
-                             A_ab[3 * i + 2] * x[v][b + 2];
-          }
-      }
-    };
-
-
-
-    template <std::size_t n, typename Rows>
-    void
-    multiply(const unsigned int n_nodes,
-             const Rows &rows,
-             const std::array<double *, n> &y,
-             const std::array<const double *, n> &x)
-    {
-      for_all_rows(n_nodes,
-                   [&](const unsigned int begin, const unsigned int end) {
-                     for (unsigned int a = begin; a < end; ++a)
-                       {
-                         double sum[n][3] = {};
-                         rows.template multiply_row<n>(a, x, sum);
-                         for (unsigned int v = 0; v < n; ++v)
-                           std::copy_n(sum[v], 3, y[v] + 3 * a);
-                       }
-                   });
-    }
-
-
-
-    template <typename Rows>
-    void
-    multiply(const unsigned int n_nodes,
-             const Rows &rows,
-             NodalVector &y,
-             const NodalVector &x)
-    {
-      AssertDimension(x.size(), 3 * n_nodes);
-      AssertDimension(y.size(), x.size());
-      multiply<1>(n_nodes, rows, {{y.begin()}}, {{x.begin()}});
-    }
-
-
-
-    // Two or three at once, as there are stages.
-    template <typename Rows>
-    void
-    multiply(const unsigned int n_nodes,
-             const Rows &rows,
-             std::vector<NodalVector> &y,
-             const std::vector<NodalVector> &x)
-    {
-      AssertDimension(y.size(), x.size());
-      for (unsigned int v = 0; v < x.size(); ++v)
+      using Lanes                     = typename Layout<n>::Lanes;
+      constexpr unsigned int n_groups = Layout<n>::n_groups;
+      constexpr unsigned int n_lanes  = Layout<n>::n_lanes;
+      constexpr unsigned int width    = n_lanes / n_groups;
+      const NodeGraph &graph          = rows.graph;
+      double *const y                 = rows.y - n_lanes * rows.begin;
+      for (std::size_t a = rows.begin; a < rows.end; ++a)
         {
-          AssertDimension(x[v].size(), 3 * n_nodes);
-          AssertDimension(y[v].size(), x[v].size());
+          const std::size_t n_entries      = graph.n_upper(a);
+          const unsigned int *const column = graph.upper_columns(a);
+          const double *A = rows.values + 9 * graph.upper_start[a];
+          for (unsigned int g = 0; g < n_groups; ++g)
+            {
+              const std::size_t shift = g * width;
+              const Lanes x_a  = load(rows.x + n_lanes * a + shift, Lanes());
+              const Lanes x_a0 = splat<0>(x_a), x_a1 = splat<1>(x_a),
+                          x_a2 = splat<2>(x_a);
+              Lanes sum        = block_column(A, 0, Lanes()) * x_a0 +
+                          block_column(A, 1, Lanes()) * x_a1 +
+                          block_column(A, 2, Lanes()) * x_a2;
+              for (std::size_t e = 1; e < n_entries; ++e)
+                {
+                  const double *const A_ab = A + 9 * e;
+                  const std::size_t b      = n_lanes * column[e] + shift;
+                  const Lanes x_b          = load(rows.x + b, Lanes());
+                  sum += block_column(A_ab, 0, Lanes()) * splat<0>(x_b) +
+                         block_column(A_ab, 1, Lanes()) * splat<1>(x_b) +
+                         block_column(A_ab, 2, Lanes()) * splat<2>(x_b);
+                  *reinterpret_cast<Lanes *>(y + b) +=
+                    block_row(A_ab, 0, Lanes()) * x_a0 +
+                    block_row(A_ab, 1, Lanes()) * x_a1 +
+                    block_row(A_ab, 2, Lanes()) * x_a2;
+                }
+              *reinterpret_cast<Lanes *>(y + n_lanes * a + shift) += sum;
+            }
         }
+    }
+
+
+
+    template <unsigned int n>
+    ACF_INLINE void
+    multiply_scalars(const Rows &rows)
+    {
+      using Lanes                     = typename Layout<n>::Lanes;
+      constexpr unsigned int n_groups = Layout<n>::n_groups;
+      constexpr unsigned int n_lanes  = Layout<n>::n_lanes;
+      constexpr unsigned int width    = n_lanes / n_groups;
+      const NodeGraph &graph          = rows.graph;
+      double *const y                 = rows.y - n_lanes * rows.begin;
+      for (std::size_t a = rows.begin; a < rows.end; ++a)
+        {
+          const std::size_t n_entries      = graph.n_upper(a);
+          const unsigned int *const column = graph.upper_columns(a);
+          const double *const m            = rows.values + graph.upper_start[a];
+          for (unsigned int g = 0; g < n_groups; ++g)
+            {
+              const std::size_t shift = g * width;
+              const Lanes x_a = load(rows.x + n_lanes * a + shift, Lanes());
+              Lanes sum       = m[0] * x_a;
+              for (std::size_t e = 1; e < n_entries; ++e)
+                {
+                  const std::size_t b = n_lanes * column[e] + shift;
+                  sum += m[e] * load(rows.x + b, Lanes());
+                  *reinterpret_cast<Lanes *>(y + b) += m[e] * x_a;
+                }
+              *reinterpret_cast<Lanes *>(y + n_lanes * a + shift) += sum;
+            }
+        }
+    }
+
+
+
+    // One function per kind of matrix and instruction set.
+#define ACF_PRODUCTS(name, attributes)                                 \
+  template <unsigned int n>                                            \
+  attributes void multiply_##name(const Rows &rows, const bool blocks) \
+  {                                                                    \
+    if (blocks)                                                        \
+      multiply_blocks<n>(rows);                                        \
+    else                                                               \
+      multiply_scalars<n>(rows);                                       \
+  }
+
+    ACF_PRODUCTS(any, )
+#if defined(__x86_64__)
+    ACF_PRODUCTS(avx2, ACF_AVX2)
+    ACF_PRODUCTS(avx512, ACF_AVX512)
+#endif
+#undef ACF_PRODUCTS
+
+    template <unsigned int n>
+    void
+    multiply_rows(const Rows &rows, const bool blocks)
+    {
+#if defined(__x86_64__)
+      if (present_processor() == Processor::avx512)
+        return multiply_avx512<n>(rows, blocks);
+      if (present_processor() == Processor::avx2)
+        return multiply_avx2<n>(rows, blocks);
+#endif
+      multiply_any<n>(rows, blocks);
+    }
+
+
+
+    // Rows of the matrix, whose products reach the nodes from begin to reach.
+    struct Part
+    {
+      std::size_t begin, end, reach;
+      AlignedVector<double> y;
+    };
+
+    std::vector<Part>
+    divide(const NodeGraph &graph)
+    {
+      const std::size_t n_nodes  = graph.n_nodes();
+      const unsigned int n_parts = n_ranges(n_nodes);
+      std::vector<Part> parts(n_parts);
+      for (unsigned int p = 0; p < n_parts; ++p)
+        {
+          parts[p].begin = n_nodes * p / n_parts;
+          parts[p].end   = n_nodes * (p + 1) / n_parts;
+          parts[p].reach = parts[p].end;
+          for (std::size_t a = parts[p].begin; a < parts[p].end; ++a)
+            parts[p].reach = std::max<std::size_t>(
+              parts[p].reach, graph.column[graph.row_start[a + 1] - 1] + 1);
+        }
+      return parts;
+    }
+
+
+
+    template <unsigned int n>
+    void
+    multiply(const NodeGraph &graph,
+             const std::vector<double> &values,
+             const bool blocks,
+             NodalVector *const *const y,
+             const NodalVector *const *const x)
+    {
+      constexpr unsigned int n_lanes = Layout<n>::n_lanes;
+      const std::size_t n_nodes      = graph.n_nodes();
+      for (unsigned int v = 0; v < n; ++v)
+        {
+          AssertDimension(x[v]->size(), 3 * n_nodes);
+          AssertDimension(y[v]->size(), x[v]->size());
+        }
+
+      AlignedVector<double> lanes;
+      lanes.resize_fast(n_lanes * n_nodes);
+      run_ranges(n_nodes, [&](const std::size_t begin, const std::size_t end) {
+        for (std::size_t a = begin; a < end; ++a)
+          for (unsigned int v = 0; v < n_lanes / 4; ++v)
+            for (unsigned int i = 0; i < 4; ++i)
+              lanes[n_lanes * a + 4 * v + i] =
+                v < n && i < 3 ? x[v]->begin()[3 * a + i] : 0;
+      });
+
+      std::vector<Part> parts = divide(graph);
+      run_tasks(parts.size(), [&](const unsigned int p) {
+        Part &part = parts[p];
+        part.y.resize(n_lanes * (part.reach - part.begin));
+        multiply_rows<n>({graph,
+                          values.data(),
+                          part.begin,
+                          part.end,
+                          lanes.data(),
+                          part.y.data()},
+                         blocks);
+      });
+
+      // of the part that has the row and of those before which reach it
+      run_tasks(parts.size(), [&](const unsigned int p) {
+        for (unsigned int q = p + 1; q-- > 0;)
+          {
+            const Part &part      = parts[q];
+            const std::size_t end = std::min(parts[p].end, part.reach);
+            for (std::size_t a = parts[p].begin; a < end; ++a)
+              for (unsigned int v = 0; v < n; ++v)
+                for (unsigned int i = 0; i < 3; ++i)
+                  {
+                    double &entry = y[v]->begin()[3 * a + i];
+                    entry         = (q == p ? 0 : entry) +
+                            part.y[n_lanes * (a - part.begin) + 4 * v + i];
+                  }
+          }
+      });
+    }
+
+
+
+    // Two or three vectors at once, as there are stages.
+    void
+    multiply(const NodeGraph &graph,
+             const std::vector<double> &values,
+             const bool blocks,
+             const std::vector<NodalVector *> &y,
+             const std::vector<const NodalVector *> &x)
+    {
+      AssertDimension(y.size(), x.size());
       unsigned int v = 0;
       if (x.size() % 3 == 0)
         for (; v < x.size(); v += 3)
-          multiply<3>(n_nodes,
-                      rows,
-                      {{y[v].begin(), y[v + 1].begin(), y[v + 2].begin()}},
-                      {{x[v].begin(), x[v + 1].begin(), x[v + 2].begin()}});
+          multiply<3>(graph, values, blocks, &y[v], &x[v]);
       for (; v + 2 <= x.size(); v += 2)
-        multiply<2>(n_nodes,
-                    rows,
-                    {{y[v].begin(), y[v + 1].begin()}},
-                    {{x[v].begin(), x[v + 1].begin()}});
+        multiply<2>(graph, values, blocks, &y[v], &x[v]);
       if (v < x.size())
-        multiply(n_nodes, rows, y[v], x[v]);
+        multiply<1>(graph, values, blocks, &y[v], &x[v]);
     }
   } // namespace
 
 
 
-  std::size_t
-  NodeGraph::entry(const unsigned int row, const unsigned int col) const
+  NodeGraph::NodeGraph(std::vector<std::size_t> new_row_start,
+                       std::vector<unsigned int> new_column)
+    : row_start(std::move(new_row_start))
+    , column(std::move(new_column))
+    , upper_start(row_start.size(), 0)
   {
-    const auto begin = column.begin() + row_start[row];
+    for (unsigned int a = 0; a < n_nodes(); ++a)
+      {
+        const auto begin = column.begin() + row_start[a];
+        const auto end   = column.begin() + row_start[a + 1];
+        upper_start[a + 1] =
+          upper_start[a] + (end - std::lower_bound(begin, end, a));
+      }
+  }
+
+
+
+  std::size_t
+  NodeGraph::upper_entry(const unsigned int row, const unsigned int col) const
+  {
+    Assert(row <= col, ExcInternalError());
     const auto end   = column.begin() + row_start[row + 1];
+    const auto begin = end - n_upper(row);
     const auto it    = std::lower_bound(begin, end, col);
     Assert(it != end && *it == col, ExcMessage("No such entry."));
-    return it - column.begin();
+    return upper_start[row] + (it - begin);
   }
 
 
@@ -162,6 +361,7 @@ namespace ACF
   NodeGraph::memory_consumption() const
   {
     return MemoryConsumption::memory_consumption(row_start) +
+           MemoryConsumption::memory_consumption(upper_start) +
            MemoryConsumption::memory_consumption(column);
   }
 
@@ -170,7 +370,7 @@ namespace ACF
   ScalarNodeMatrix::ScalarNodeMatrix(
     const std::shared_ptr<const NodeGraph> &graph)
     : node_graph(graph)
-    , values(graph->column.size())
+    , values(graph->upper_start.back())
   {}
 
 
@@ -180,7 +380,8 @@ namespace ACF
                         const unsigned int col,
                         const double value)
   {
-    values[node_graph->entry(row, col)] += value;
+    if (row <= col)
+      values[node_graph->upper_entry(row, col)] += value;
   }
 
 
@@ -188,16 +389,16 @@ namespace ACF
   void
   ScalarNodeMatrix::vmult(NodalVector &y, const NodalVector &x) const
   {
-    multiply(node_graph->n_nodes(), ScalarRows{*node_graph, values}, y, x);
+    multiply(*node_graph, values, false, {&y}, {&x});
   }
 
 
 
   void
-  ScalarNodeMatrix::vmult(std::vector<NodalVector> &y,
-                          const std::vector<NodalVector> &x) const
+  ScalarNodeMatrix::vmult(const std::vector<NodalVector *> &y,
+                          const std::vector<const NodalVector *> &x) const
   {
-    multiply(node_graph->n_nodes(), ScalarRows{*node_graph, values}, y, x);
+    multiply(*node_graph, values, false, y, x);
   }
 
 
@@ -207,10 +408,16 @@ namespace ACF
   {
     std::vector<double> sums(node_graph->n_nodes());
     for (unsigned int a = 0; a < sums.size(); ++a)
-      for (std::size_t e = node_graph->row_start[a];
-           e < node_graph->row_start[a + 1];
-           ++e)
-        sums[a] += values[e];
+      {
+        const double *const m            = &values[node_graph->upper_start[a]];
+        const unsigned int *const column = node_graph->upper_columns(a);
+        sums[a] += m[0];
+        for (std::size_t e = 1; e < node_graph->n_upper(a); ++e)
+          {
+            sums[a] += m[e];
+            sums[column[e]] += m[e];
+          }
+      }
     return sums;
   }
 
@@ -224,10 +431,11 @@ namespace ACF
 
 
 
+  // products read up to eight numbers from any of a block on
   BlockNodeMatrix::BlockNodeMatrix(
     const std::shared_ptr<const NodeGraph> &graph)
     : node_graph(graph)
-    , values(9 * graph->column.size())
+    , values(9 * graph->upper_start.back() + 8)
   {}
 
 
@@ -246,7 +454,9 @@ namespace ACF
                        const unsigned int col,
                        const Matrix3 &block)
   {
-    double *const entry = &values[9 * node_graph->entry(row, col)];
+    if (row > col)
+      return;
+    double *const entry = &values[9 * node_graph->upper_entry(row, col)];
     for (unsigned int i = 0; i < dim; ++i)
       for (unsigned int j = 0; j < dim; ++j)
         entry[3 * i + j] += block[i][j];
@@ -257,16 +467,16 @@ namespace ACF
   void
   BlockNodeMatrix::vmult(NodalVector &y, const NodalVector &x) const
   {
-    multiply(node_graph->n_nodes(), BlockRows{*node_graph, values}, y, x);
+    multiply(*node_graph, values, true, {&y}, {&x});
   }
 
 
 
   void
-  BlockNodeMatrix::vmult(std::vector<NodalVector> &y,
-                         const std::vector<NodalVector> &x) const
+  BlockNodeMatrix::vmult(const std::vector<NodalVector *> &y,
+                         const std::vector<const NodalVector *> &x) const
   {
-    multiply(node_graph->n_nodes(), BlockRows{*node_graph, values}, y, x);
+    multiply(*node_graph, values, true, y, x);
   }
 
 

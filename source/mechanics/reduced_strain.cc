@@ -9,21 +9,20 @@ namespace ACF
   namespace
   {
     Vector3
-    node_value(const NodalVector &v, const unsigned int a)
+    node_value(const NodalVector &v, const std::size_t a)
     {
-      Vector3 value;
-      for (unsigned int i = 0; i < dim; ++i)
-        value[i] = v[dim * a + i];
-      return value;
+      const double *const value = v.begin() + dim * a;
+      return Vector3({value[0], value[1], value[2]});
     }
 
 
 
     void
-    set_node_value(NodalVector &v, const unsigned int a, const Vector3 &value)
+    set_node_value(NodalVector &v, const std::size_t a, const Vector3 &value)
     {
+      double *const entry = v.begin() + dim * a;
       for (unsigned int i = 0; i < dim; ++i)
-        v[dim * a + i] = value[i];
+        entry[i] = value[i];
     }
 
 
@@ -36,12 +35,15 @@ namespace ACF
                    NodalVector &force)
     {
       const Matrix3 P = frame.contract(c);
-      for (unsigned int a = 0; a < body.n_nodes; ++a)
-        set_node_value(force,
-                       a,
-                       frame.rotation *
-                         (node_value(force, a) -
-                          P * node_value(body.averaging_vectors, a)));
+      const Matrix3 R = frame.rotation;
+      run_ranges(
+        body.n_nodes, [&](const std::size_t begin, const std::size_t end) {
+          for (std::size_t a = begin; a < end; ++a)
+            set_node_value(force,
+                           a,
+                           R * (node_value(force, a) -
+                                P * node_value(body.averaging_vectors, a)));
+        });
     }
   } // namespace
 
@@ -52,13 +54,17 @@ namespace ACF
                             const NodalVector &positions)
   {
     AssertDimension(positions.size(), body.n_unknowns());
-    Matrix3 F;
-    for (unsigned int a = 0; a < body.n_nodes; ++a)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          F[i][j] +=
-            positions[dim * a + i] * body.averaging_vectors[dim * a + j];
-    return F;
+    const double *const x = positions.begin();
+    const double *const g = body.averaging_vectors.begin();
+    return sum_ranges<Matrix3>(
+      body.n_nodes, [&](const std::size_t begin, const std::size_t end) {
+        double sum[dim][dim] = {};
+        for (std::size_t a = begin; a < end; ++a)
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j)
+              sum[i][j] += x[dim * a + i] * g[dim * a + j];
+        return Matrix3(sum);
+      });
   }
 
 
@@ -67,11 +73,18 @@ namespace ACF
   mass_mean(const BodyOperators &body, const NodalVector &field)
   {
     AssertDimension(field.size(), body.n_unknowns());
-    Vector3 mean;
-    for (unsigned int a = 0; a < body.n_nodes; ++a)
-      for (unsigned int i = 0; i < dim; ++i)
-        mean[i] += body.nodal_masses[a] * field[dim * a + i];
-    return mean / body.mass;
+    const double *const x = field.begin();
+    return sum_ranges<Vector3>(body.n_nodes,
+                               [&](const std::size_t begin,
+                                   const std::size_t end) {
+                                 double sum[dim] = {};
+                                 for (std::size_t a = begin; a < end; ++a)
+                                   for (unsigned int i = 0; i < dim; ++i)
+                                     sum[i] +=
+                                       body.nodal_masses[a] * x[dim * a + i];
+                                 return Vector3(sum);
+                               }) /
+           body.mass;
   }
 
 
@@ -83,13 +96,17 @@ namespace ACF
                           NodalVector &displacement)
   {
     AssertDimension(displacement.size(), body.n_unknowns());
-    const Vector3 centre  = mass_mean(body, positions);
-    const Matrix3 inverse = transpose(rotation);
-    for (unsigned int a = 0; a < body.n_nodes; ++a)
-      set_node_value(displacement,
-                     a,
-                     inverse * (node_value(positions, a) - centre) -
-                       (node_value(body.reference_positions, a) - body.centre));
+    const Vector3 centre = mass_mean(body, positions);
+    const Matrix3 R      = rotation;
+    run_ranges(body.n_nodes,
+               [&](const std::size_t begin, const std::size_t end) {
+                 for (std::size_t a = begin; a < end; ++a)
+                   set_node_value(displacement,
+                                  a,
+                                  (node_value(positions, a) - centre) * R -
+                                    (node_value(body.reference_positions, a) -
+                                     body.centre));
+               });
   }
 
 
@@ -161,17 +178,23 @@ namespace ACF
                       const NodalVector &q,
                       NodalVector &force)
     {
-      double energy = 0;
-      Vector3 c;
-      for (unsigned int a = 0; a < body.n_nodes; ++a)
-        {
-          const Vector3 q_a = node_value(q, a);
-          const Vector3 k_a = node_value(force, a);
-          energy += 0.5 * (q_a * k_a);
-          c += cross_product_3d(q_a, k_a);
-        }
-      balance_moment(body, frame, c, force);
-      return energy;
+      // the moment c and twice the energy
+      const auto sums = sum_ranges<Tensor<1, dim + 1>>(
+        body.n_nodes, [&](const std::size_t begin, const std::size_t end) {
+          Tensor<1, dim + 1> sum;
+          for (std::size_t a = begin; a < end; ++a)
+            {
+              const Vector3 q_a    = node_value(q, a);
+              const Vector3 k_a    = node_value(force, a);
+              const Vector3 moment = cross_product_3d(q_a, k_a);
+              for (unsigned int i = 0; i < dim; ++i)
+                sum[i] += moment[i];
+              sum[dim] += q_a * k_a;
+            }
+          return sum;
+        });
+      balance_moment(body, frame, Vector3({sums[0], sums[1], sums[2]}), force);
+      return 0.5 * sums[dim];
     }
   } // namespace
 
@@ -201,25 +224,35 @@ namespace ACF
   bool
   reduced_strain_forces(const BodyOperators &body,
                         const RotationMeasure measure,
-                        const std::vector<NodalVector> &positions,
-                        std::vector<NodalVector> &forces)
+                        const std::vector<const NodalVector *> &positions,
+                        const std::vector<NodalVector *> &forces,
+                        std::vector<NodalVector> &scratch)
   {
     const unsigned int n = positions.size();
     std::vector<std::optional<BodyRotation>> frames(n);
-    std::vector<NodalVector> q(positions);
-    run_tasks(n, [&](const unsigned int i) {
-      frames[i] =
-        body_rotation(mean_deformation_gradient(body, positions[i]), measure);
-      if (frames[i])
-        co_rotated_displacement(body, positions[i], frames[i]->rotation, q[i]);
-    });
-    for (const auto &frame : frames)
-      if (!frame)
-        return false;
+    std::vector<const NodalVector *> q;
+    scratch.resize(n);
+    for (NodalVector &displacement : scratch)
+      {
+        if (displacement.size() != body.n_unknowns())
+          displacement.reinit(body.n_unknowns(), true);
+        q.push_back(&displacement);
+      }
+    for (unsigned int i = 0; i < n; ++i)
+      {
+        frames[i] =
+          body_rotation(mean_deformation_gradient(body, *positions[i]),
+                        measure);
+        if (!frames[i])
+          return false;
+        co_rotated_displacement(body,
+                                *positions[i],
+                                frames[i]->rotation,
+                                scratch[i]);
+      }
     body.stiffness_matrix.vmult(forces, q);
-    run_tasks(n, [&](const unsigned int i) {
-      force_of_products(body, *frames[i], q[i], forces[i]);
-    });
+    for (unsigned int i = 0; i < n; ++i)
+      force_of_products(body, *frames[i], *q[i], *forces[i]);
     return true;
   }
 

@@ -263,7 +263,7 @@ namespace ACF
                  Front<Number> &front) const
       {
         const NodeGraph &graph = matrix.stiffness.graph();
-        std::vector<std::pair<unsigned int, std::size_t>> entries;
+        std::vector<std::pair<unsigned int, unsigned int>> entries;
         std::vector<unsigned int> places;
         for (unsigned int c = 0; c < supernode.n_columns; ++c)
           {
@@ -275,28 +275,30 @@ namespace ACF
                  e < graph.row_start[node + 1];
                  ++e)
               if (tree.place()[graph.column[e]] >= place)
-                entries.emplace_back(tree.place()[graph.column[e]], e);
+                entries.emplace_back(tree.place()[graph.column[e]],
+                                     graph.column[e]);
             std::sort(entries.begin(), entries.end());
             for (const auto &entry : entries)
               places.push_back(entry.first);
             const std::vector<std::size_t> rows = local_rows(supernode, places);
             for (unsigned int q = 0; q < entries.size(); ++q)
-              add_block(entries[q].second, rows[q], dim * c, front);
+              add_block(entries[q].second, node, rows[q], dim * c, front);
           }
       }
 
-      // The transposed block of an entry of row a is that of column a.
       void
-      add_block(const std::size_t e,
+      add_block(const unsigned int row_node,
+                const unsigned int column_node,
                 const std::size_t row,
                 const std::size_t column,
                 Front<Number> &front) const
       {
-        const double *const block = matrix.stiffness.block(e);
+        const NodeBlock block = matrix.stiffness.block(row_node, column_node);
         for (unsigned int j = 0; j < dim; ++j)
           for (unsigned int i = 0; i < dim; ++i)
-            front.column(column + j)[row + i] += block[dim * j + i];
-        const Number mass = matrix.shift * matrix.mass.value(e);
+            front.column(column + j)[row + i] += block(i, j);
+        const Number mass =
+          matrix.shift * matrix.mass.value(row_node, column_node);
         for (unsigned int j = 0; j < dim; ++j)
           front.column(column + j)[row + j] += mass;
       }

@@ -44,32 +44,51 @@ namespace ACF
                           const StageRotations &rotations,
                           Number *result)
     {
-      const unsigned int n = stages[0][body].size();
-      NodalVector local(n);
-      std::fill(result, result + n, Number());
-      for (unsigned int i = 0; i < factors.size(); ++i)
-        {
-          rotations.stages[i][body].to_body(stages[i][body], n / dim, local);
-          for (unsigned int k = 0; k < n; ++k)
-            result[k] += factors[i] * local[k];
-        }
+      const auto combine = [&](const std::size_t begin, const std::size_t end) {
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            Number sum[dim] = {};
+            for (unsigned int i = 0; i < factors.size(); ++i)
+              {
+                const Matrix3 &R      = rotations.stages[i][body][a];
+                const double *const r = stages[i][body].begin() + dim * a;
+                for (unsigned int j = 0; j < dim; ++j)
+                  sum[j] += factors[i] *
+                            (R[0][j] * r[0] + R[1][j] * r[1] + R[2][j] * r[2]);
+              }
+            std::copy_n(sum, dim, result + dim * a);
+          }
+      };
+      run_ranges(stages[0][body].size() / dim, combine);
     }
 
 
 
-    // z += Re(factor R w) for one body and stage
+    // z_i += Re(factor_i R_i w) for one body in all stages, or z_i = ...
     template <typename Number>
     void
-    add_in_world_frame(const Number *w,
-                       const Number factor,
-                       const NodeRotations &rotations,
-                       NodalVector &z)
+    add_in_world_frame(const Number *const w,
+                       const std::vector<Number> &factors,
+                       const std::vector<const NodeRotations *> &rotations,
+                       const bool replace,
+                       const unsigned int body,
+                       StageVector &stages)
     {
-      NodalVector real(z.size());
-      for (unsigned int k = 0; k < z.size(); ++k)
-        real[k] = std::real(factor * w[k]);
-      rotations.to_world(real, z.size() / dim, real);
-      z += real;
+      const auto add = [&](const std::size_t begin, const std::size_t end) {
+        for (std::size_t a = begin; a < end; ++a)
+          for (unsigned int i = 0; i < factors.size(); ++i)
+            {
+              const Matrix3 &R = (*rotations[i])[a];
+              double real[dim];
+              for (unsigned int j = 0; j < dim; ++j)
+                real[j] = std::real(factors[i] * w[dim * a + j]);
+              double *const z = stages[i][body].begin() + dim * a;
+              for (unsigned int j = 0; j < dim; ++j)
+                z[j] = (replace ? 0 : z[j]) + R[j][0] * real[0] +
+                       R[j][1] * real[1] + R[j][2] * real[2];
+            }
+      };
+      run_ranges(stages[0][body].size() / dim, add);
     }
 
 
@@ -172,6 +191,7 @@ namespace ACF
   DiagonalizedStageSolver::solve_component(
     const StageDiagonalization::Component &component,
     CoupledSystem<Number> &coupled_system,
+    const bool is_first,
     const StageVector *const stages,
     const StageConstraints &constraints,
     StageVector &stage_increments,
@@ -206,18 +226,23 @@ namespace ACF
     else
       mu = coupled_system.solve_constraints(g);
 
+    run_tasks(n_bodies, [&](const unsigned int b) {
+      std::vector<const NodeRotations *> frames;
+      for (unsigned int i = 0; i < n_stages; ++i)
+        frames.push_back(stages != nullptr ? &rotations.stages[i][b]
+                                           : &rotations.mean[b]);
+      add_in_world_frame(coupled_system.body(b),
+                         to_stages,
+                         frames,
+                         is_first,
+                         b,
+                         stage_increments);
+    });
     for (unsigned int i = 0; i < n_stages; ++i)
-      {
-        run_tasks(n_bodies, [&](const unsigned int b) {
-          add_in_world_frame(coupled_system.body(b),
-                             to_stages[i],
-                             stages != nullptr ? rotations.stages[i][b]
-                                               : rotations.mean[b],
-                             stage_increments[i][b]);
-        });
-        for (unsigned int r = 0; r < mu.size(); ++r)
-          constraint_increments[i](r) += std::real(to_stages[i] * mu(r));
-      }
+      for (unsigned int r = 0; r < mu.size(); ++r)
+        constraint_increments[i](r) =
+          (is_first ? 0 : constraint_increments[i](r)) +
+          std::real(to_stages[i] * mu(r));
   }
 
 
@@ -228,15 +253,11 @@ namespace ACF
                                      StageVector &stage_increments,
                                      StageConstraints &constraint_increments)
   {
-    for (auto &stage : stage_increments)
-      for (auto &vector : stage)
-        vector = 0;
-    for (auto &rows : constraint_increments)
-      rows.setZero();
     for (unsigned int k = 0; k < diagonalization.components.size(); ++k)
       if (diagonalization.components[k].is_real())
         solve_component(diagonalization.components[k],
                         *real_systems[k],
+                        k == 0,
                         stages,
                         constraints,
                         stage_increments,
@@ -244,6 +265,7 @@ namespace ACF
       else
         solve_component(diagonalization.components[k],
                         *complex_systems[k],
+                        k == 0,
                         stages,
                         constraints,
                         stage_increments,
@@ -256,10 +278,15 @@ namespace ACF
   DiagonalizedStageSolver::solve(StageVector &stages,
                                  StageConstraints &constraints)
   {
-    StageVector stage_increments(stages);
     StageConstraints constraint_increments(constraints);
-    solve_all(&stages, constraints, stage_increments, constraint_increments);
-    stages.swap(stage_increments);
+    // one component has read the right-hand sides before it writes
+    if (diagonalization.components.size() == 1)
+      solve_all(&stages, constraints, stages, constraint_increments);
+    else
+      {
+        work = stages;
+        solve_all(&work, constraints, stages, constraint_increments);
+      }
     constraints.swap(constraint_increments);
   }
 
@@ -401,17 +428,25 @@ namespace ACF
         statistics.real_solves += n_bodies;
       }
 
-    for (unsigned int i = 0; i < n_stages; ++i)
-      for (unsigned int b = 0; b < n_bodies; ++b)
-        {
-          stage_increments[i][b] = 0;
-          for (unsigned int j = 0; j < n_stages; ++j)
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      {
+        std::vector<const NodeRotations *> frames;
+        for (unsigned int i = 0; i < n_stages; ++i)
+          frames.push_back(stages != nullptr ? &rotations.stages[i][b]
+                                             : &rotations.mean[b]);
+        for (unsigned int j = 0; j < n_stages; ++j)
+          {
+            std::vector<double> factors;
+            for (unsigned int i = 0; i < n_stages; ++i)
+              factors.push_back(triangularization.increments(i, j));
             add_in_world_frame(systems[j]->body(b),
-                               triangularization.increments(i, j),
-                               stages != nullptr ? rotations.stages[i][b]
-                                                 : rotations.mean[b],
-                               stage_increments[i][b]);
-        }
+                               factors,
+                               frames,
+                               j == 0,
+                               b,
+                               stage_increments);
+          }
+      }
   }
 
 

@@ -40,33 +40,6 @@ namespace ACF
 
 
 
-    // Instruction sets, best first.
-    enum class Processor
-    {
-      avx512,
-      avx2,
-      any
-    };
-
-    Processor
-    present_processor()
-    {
-#if defined(__x86_64__)
-      static const Processor processor =
-        __builtin_cpu_supports("avx512f") &&
-            __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("fma")
-          ? Processor::avx512
-        : __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
-          ? Processor::avx2
-          : Processor::any;
-      return processor;
-#else
-      return Processor::any;
-#endif
-    }
-
-
-
     // One function per direction and instruction set.
 #define ACF_SOLVES(name, attributes)                                     \
   template <typename Real, unsigned int planes, unsigned int n_vectors>  \
@@ -84,8 +57,8 @@ namespace ACF
 
     ACF_SOLVES(any, )
 #if defined(__x86_64__)
-    ACF_SOLVES(avx2, __attribute__((target("avx2,fma"))))
-    ACF_SOLVES(avx512, __attribute__((target("avx512f,avx512vl,fma"))))
+    ACF_SOLVES(avx2, ACF_AVX2)
+    ACF_SOLVES(avx512, ACF_AVX512)
 #endif
 #undef ACF_SOLVES
 

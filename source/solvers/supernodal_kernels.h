@@ -4,6 +4,7 @@
 #ifndef acf_solvers_supernodal_kernels_h
 #define acf_solvers_supernodal_kernels_h
 
+#include <acf/base/processor.h>
 #include <acf/solvers/elimination_tree.h>
 
 /*
@@ -17,10 +18,6 @@
  * vectors. Then follow its rows from the vector that holds row j + w on:
  * [vector of rows][column][plane][row of the vector], with zeros above.
  */
-
-// Inlined into functions for several instruction sets, see
-// supernodal_factor.cc; so without lambdas.
-#define ACF_INLINE inline __attribute__((always_inline))
 
 namespace ACF
 {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/linear_combination.h>
 #include <acf/time/local_error.h>
 
 #include <algorithm>
@@ -168,12 +169,13 @@ namespace ACF
     double error = 0;
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
-        sum.reinit(increments[0][b].size());
+        std::vector<ScaledVector> terms;
         for (unsigned int k = 0; k < weights.size(); ++k)
           for (unsigned int i = 0; i < increments.size(); ++i)
-            sum.add(weights[k](i),
-                    k == 0 ? increments[i][b]
-                           : history.steps[k - 1].increments[i][b]);
+            terms.push_back({weights[k](i),
+                             k == 0 ? &increments[i][b]
+                                    : &history.steps[k - 1].increments[i][b]});
+        linear_combination(terms, sum);
         error = std::max(error, relative_norm(system.bodies()[b], sum));
       }
     return error;

@@ -3,6 +3,7 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
+#include <acf/base/linear_combination.h>
 #include <acf/base/parallel.h>
 #include <acf/time/stage_equations.h>
 
@@ -23,6 +24,9 @@ namespace ACF
     increments.assign(tableau.n_stages(), zero);
     multipliers.assign(tableau.n_stages(),
                        Eigen::VectorXd::Zero(system.n_constraints()));
+    stage_positions = stage_velocities = stage_accelerations =
+      StageVector(tableau.n_stages(), SystemVector(system.bodies().size()));
+    work.resize(system.bodies().size());
     marker_nodes.resize(system.bodies().size());
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       if (system.bodies()[b].strain_measure() == StrainMeasure::green_lagrange)
@@ -47,15 +51,38 @@ namespace ACF
 
 
 
+  void
+  StageEquations::set_position(const unsigned int stage,
+                               const unsigned int body,
+                               NodalVector &x) const
+  {
+    linear_combination({{1, &state->positions[body]},
+                        {tableau.c(stage) * tau, &state->velocities[body]},
+                        {1, &increments[stage][body]}},
+                       x);
+  }
+
+
+
+  void
+  StageEquations::set_velocity(const unsigned int stage,
+                               const unsigned int body,
+                               NodalVector &v) const
+  {
+    std::vector<ScaledVector> terms{{1, &state->velocities[body]}};
+    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+      terms.push_back({A_inverse(stage, j) / tau, &increments[j][body]});
+    linear_combination(terms, v);
+  }
+
+
+
   NodalVector
   StageEquations::position(const unsigned int stage,
                            const unsigned int body) const
   {
-    NodalVector x(state->positions[body]);
-    x.add(tableau.c(stage) * tau,
-          state->velocities[body],
-          1.,
-          increments[stage][body]);
+    NodalVector x;
+    set_position(stage, body, x);
     return x;
   }
 
@@ -65,9 +92,8 @@ namespace ACF
   StageEquations::velocity(const unsigned int stage,
                            const unsigned int body) const
   {
-    NodalVector v(state->velocities[body]);
-    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
-      v.add(A_inverse(stage, j) / tau, increments[j][body]);
+    NodalVector v;
+    set_velocity(stage, body, v);
     return v;
   }
 
@@ -104,36 +130,42 @@ namespace ACF
 
 
   bool
-  StageEquations::body_residual(const unsigned int b,
-                                BodyStages &stages,
-                                StageVector &residual) const
+  StageEquations::body_residual(const unsigned int b, StageVector &residual)
   {
-    const Body &body            = system.bodies()[b];
-    const unsigned int n_stages = tableau.n_stages();
-    const double inverse_square = 1 / (tau * tau);
-    const NodalVector zero(body.operators().n_unknowns());
-    stages.positions.resize(n_stages);
-    stages.velocities.resize(n_stages);
-    stages.accelerations.assign(n_stages, zero);
+    const Body &body                  = system.bodies()[b];
+    const unsigned int n_stages       = tableau.n_stages();
+    const double inverse_square       = 1 / (tau * tau);
+    std::vector<NodalVector> &inertia = work[b].inertia;
+    inertia.resize(n_stages);
+    std::vector<const NodalVector *> positions, velocities, accelerations;
+    std::vector<NodalVector *> forces, inertial_forces;
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        stages.positions[i] = position(i, b);
+        set_position(i, b, stage_positions[i][b]);
         if (system.needs_velocities())
-          stages.velocities[i] = velocity(i, b);
+          set_velocity(i, b, stage_velocities[i][b]);
+        std::vector<ScaledVector> terms;
         for (unsigned int j = 0; j < n_stages; ++j)
-          stages.accelerations[i].add(inverse_square * A_inverse_squared(i, j),
-                                      increments[j][b]);
+          terms.push_back(
+            {inverse_square * A_inverse_squared(i, j), &increments[j][b]});
+        linear_combination(terms, stage_accelerations[i][b]);
+        if (inertia[i].size() == 0)
+          inertia[i].reinit(body.operators().n_unknowns());
+        positions.push_back(&stage_positions[i][b]);
+        velocities.push_back(&stage_velocities[i][b]);
+        accelerations.push_back(&stage_accelerations[i][b]);
+        inertial_forces.push_back(&inertia[i]);
+        forces.push_back(&residual[i][b]);
       }
 
-    std::vector<NodalVector> forces(n_stages, zero), inertia(n_stages, zero);
-    if (!internal_forces(body, stages.positions, stages.velocities, forces))
+    if (!internal_forces(body, positions, velocities, forces, work[b].forces))
       return false;
-    body.operators().mass_matrix.vmult(inertia, stages.accelerations);
+    body.operators().mass_matrix.vmult(inertial_forces, accelerations);
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        forces[i].sadd(-1., -1., inertia[i]);
-        system.add_loads(b, time(i), stages.positions[i], forces[i]);
-        residual[i][b].swap(forces[i]);
+        linear_combination({{-1, forces[i]}, {-1, inertial_forces[i]}},
+                           *forces[i]);
+        system.add_loads(b, time(i), *positions[i], *forces[i]);
       }
     return true;
   }
@@ -143,14 +175,13 @@ namespace ACF
   bool
   StageEquations::residual(StageVector &forces,
                            StageConstraints &constraints,
-                           std::string &failure) const
+                           std::string &failure)
   {
     const unsigned int n_stages = tableau.n_stages();
     const unsigned int n_bodies = system.bodies().size();
-    std::vector<BodyStages> bodies(n_bodies);
     std::vector<char> is_inverted(n_bodies, false);
     run_tasks(n_bodies, [&](const unsigned int b) {
-      is_inverted[b] = !body_residual(b, bodies[b], forces);
+      is_inverted[b] = !body_residual(b, forces);
     });
     statistics.force_evaluations += n_bodies * n_stages;
     for (unsigned int b = 0; b < n_bodies; ++b)
@@ -164,22 +195,14 @@ namespace ACF
     if (system.n_marker_values() == 0)
       return true;
 
-    const auto marker_values =
-      [&](std::vector<NodalVector> BodyStages::*const part,
-          const unsigned int stage) {
-        SystemVector values(n_bodies);
-        for (unsigned int b = 0; b < n_bodies; ++b)
-          values[b].swap((bodies[b].*part)[stage]);
-        return system.marker_values(values);
-      };
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        const Eigen::VectorXd s = marker_values(&BodyStages::positions, i);
+        const Eigen::VectorXd s = system.marker_values(stage_positions[i]);
         Eigen::VectorXd marker_velocities, marker_accelerations;
         if (system.needs_velocities())
-          marker_velocities = marker_values(&BodyStages::velocities, i);
+          marker_velocities = system.marker_values(stage_velocities[i]);
         if (!system.masses().empty())
-          marker_accelerations = marker_values(&BodyStages::accelerations, i);
+          marker_accelerations = system.marker_values(stage_accelerations[i]);
         const Eigen::VectorXd F = system.marker_forces(time(i),
                                                        s,
                                                        marker_velocities,

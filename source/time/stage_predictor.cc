@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/linear_combination.h>
 #include <acf/time/stage_predictor.h>
 
 #include <algorithm>
@@ -34,20 +35,6 @@ namespace ACF
               E(i, j) *= (1 + ratio * c(i) - c(k)) / (c(j) - c(k));
         }
     extrapolation = ratio * ratio * A_squared * E * A_squared_inverse;
-  }
-
-
-
-  void
-  StagePredictor::extrapolate(const StageHistory &history,
-                              const unsigned int b,
-                              const double factor,
-                              StageVector &increments) const
-  {
-    const StageVector &last = history.steps[0].increments;
-    for (unsigned int i = 0; i < increments.size(); ++i)
-      for (unsigned int j = 0; j < increments.size(); ++j)
-        increments[i][b].add(factor * extrapolation(i, j), last[j][b]);
   }
 
 
@@ -102,16 +89,20 @@ namespace ACF
                           const unsigned int b,
                           StageVector &increments) const
   {
-    for (SystemVector &stage : increments)
-      stage[b] = 0;
-    extrapolate(history, b, 1, increments);
-    if (defects.empty() || step_size != history.steps[0].size)
-      return;
-    const Eigen::VectorXd a = coefficients(products[b]);
-    for (unsigned int j = 0; j < a.size(); ++j)
-      if (a(j) != 0)
-        for (unsigned int i = 0; i < increments.size(); ++i)
-          increments[i][b].add(a(j), defects[j].increments[i][b]);
+    Eigen::VectorXd a;
+    if (!defects.empty() && step_size == history.steps[0].size)
+      a = coefficients(products[b]);
+    const StageVector &last = history.steps[0].increments;
+    for (unsigned int i = 0; i < increments.size(); ++i)
+      {
+        std::vector<ScaledVector> terms;
+        for (unsigned int j = 0; j < increments.size(); ++j)
+          terms.push_back({extrapolation(i, j), &last[j][b]});
+        for (unsigned int j = 0; j < a.size(); ++j)
+          if (a(j) != 0)
+            terms.push_back({a(j), &defects[j].increments[i][b]});
+        linear_combination(terms, increments[i][b]);
+      }
   }
 
 
@@ -143,13 +134,26 @@ namespace ACF
         defects.clear();
         return;
       }
-    Defect newest{increments, multipliers};
+    // in the memory of the oldest one
+    Defect newest;
+    if (defects.size() == max_terms + max_targets)
+      {
+        newest = std::move(defects.back());
+        defects.pop_back();
+      }
+    newest.increments.resize(increments.size(), SystemVector(products.size()));
+    const StageVector &last = history.steps[0].increments;
     for (unsigned int b = 0; b < products.size(); ++b)
-      extrapolate(history, b, -1, newest.increments);
+      for (unsigned int i = 0; i < increments.size(); ++i)
+        {
+          std::vector<ScaledVector> terms{{1, &increments[i][b]}};
+          for (unsigned int j = 0; j < increments.size(); ++j)
+            terms.push_back({-extrapolation(i, j), &last[j][b]});
+          linear_combination(terms, newest.increments[i][b]);
+        }
+    newest.multipliers = multipliers;
     extrapolate(history, -1, newest.multipliers);
     defects.push_front(std::move(newest));
-    if (defects.size() > max_terms + max_targets)
-      defects.pop_back();
 
     // appends the products with the newest one in front of the others
     const unsigned int n = defects.size();

@@ -367,7 +367,8 @@ TEST(TangentCorrection, ReplacedStiffness)
     for (std::size_t k = graph.row_start[a]; k < graph.row_start[a + 1]; ++k)
       lifted->add(a,
                   graph.column[k],
-                  -1e6 * operators.mass_matrix.value(k) * identity_matrix());
+                  -1e6 * operators.mass_matrix.value(a, graph.column[k]) *
+                    identity_matrix());
   cache.replace_stiffness(body, std::move(lifted));
   EXPECT_THROW(cache.get(body, 1e6), SimulationError);
   EXPECT_EQ(statistics.factor_bytes, bytes);

@@ -130,7 +130,7 @@ namespace ACF::Testing
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             result(dim * a + i, dim * graph.column[e] + j) =
-              matrix.block(e)[dim * i + j];
+              matrix.block(a, graph.column[e])(i, j);
     return result;
   }
 
@@ -143,7 +143,8 @@ namespace ACF::Testing
     for (unsigned int a = 0; a < n; ++a)
       for (std::size_t e = graph.row_start[a]; e < graph.row_start[a + 1]; ++e)
         for (unsigned int i = 0; i < dim; ++i)
-          result(dim * a + i, dim * graph.column[e] + i) = matrix.value(e);
+          result(dim * a + i, dim * graph.column[e] + i) =
+            matrix.value(a, graph.column[e]);
     return result;
   }
 

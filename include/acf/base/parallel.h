@@ -4,7 +4,9 @@
 #ifndef acf_base_parallel_h
 #define acf_base_parallel_h
 
+#include <cstddef>
 #include <functional>
+#include <vector>
 
 namespace ACF
 {
@@ -16,6 +18,46 @@ namespace ACF
   void
   run_tasks(const unsigned int n_tasks,
             const std::function<void(unsigned int)> &task);
+
+  /**
+   * Calls range(begin, end) for parts of [0, n), in parallel: one for each
+   * thread, fewer where n is small.
+   */
+  void
+  run_ranges(const std::size_t n,
+             const std::function<void(std::size_t, std::size_t)> &range);
+
+  /**
+   * Sum of what sum(begin, end) returns for the parts of run_ranges(), in their
+   * order: the result depends on the number of threads, but not on their
+   * timing.
+   */
+  template <typename Value, typename Sum>
+  Value
+  sum_ranges(const std::size_t n, const Sum &sum);
+
+  /** How many parts run_ranges() makes. */
+  unsigned int
+  n_ranges(const std::size_t n);
+
+
+
+  template <typename Value, typename Sum>
+  Value
+  sum_ranges(const std::size_t n, const Sum &sum)
+  {
+    const unsigned int n_parts = n_ranges(n);
+    if (n_parts == 1)
+      return sum(std::size_t(0), n);
+    std::vector<Value> parts(n_parts);
+    run_tasks(n_parts, [&](const unsigned int part) {
+      parts[part] = sum(n * part / n_parts, n * (part + 1) / n_parts);
+    });
+    Value total = parts[0];
+    for (unsigned int part = 1; part < n_parts; ++part)
+      total += parts[part];
+    return total;
+  }
 } // namespace ACF
 
 #endif

@@ -38,13 +38,15 @@ namespace ACF
    * @param positions $x_a$, m, of each state
    * @param velocities $v_a$, m/s; not used for a body without damping
    * @param[out] forces N; must have the sizes of @p positions
+   * @param scratch work space, for the next call
    * @return false, and no forces, if the body is turned inside out
    */
   bool
   internal_forces(const Body &body,
-                  const std::vector<NodalVector> &positions,
-                  const std::vector<NodalVector> &velocities,
-                  std::vector<NodalVector> &forces);
+                  const std::vector<const NodalVector *> &positions,
+                  const std::vector<const NodalVector *> &velocities,
+                  const std::vector<NodalVector *> &forces,
+                  std::vector<NodalVector> &scratch);
 
 
 

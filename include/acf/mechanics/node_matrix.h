@@ -6,6 +6,7 @@
 
 #include <acf/base/types.h>
 
+#include <algorithm>
 #include <memory>
 
 namespace ACF
@@ -16,11 +17,18 @@ namespace ACF
    */
   struct NodeGraph
   {
+    NodeGraph(std::vector<std::size_t> row_start,
+              std::vector<unsigned int> column);
+
     /** Start of each row in @p column; size n_nodes + 1. */
     std::vector<std::size_t> row_start;
 
     /** Node numbers, ascending in each row. */
     std::vector<unsigned int> column;
+
+    /** How many entries on and above the diagonal the rows before have; size
+     * n_nodes + 1. Those of a row are the last ones of the row. */
+    std::vector<std::size_t> upper_start;
 
     unsigned int
     n_nodes() const
@@ -28,12 +36,26 @@ namespace ACF
       return row_start.size() - 1;
     }
 
+    /** Entries of a row on and above the diagonal. */
+    std::size_t
+    n_upper(const unsigned int row) const
+    {
+      return upper_start[row + 1] - upper_start[row];
+    }
+
     /**
-     * Position of an entry in @p column.
-     * @pre the entry exists
+     * Number of an entry among those on and above the diagonal.
+     * @pre the entry exists, and row <= col
      */
     std::size_t
-    entry(const unsigned int row, const unsigned int col) const;
+    upper_entry(const unsigned int row, const unsigned int col) const;
+
+    /** Their columns, the row itself first. */
+    const unsigned int *
+    upper_columns(const unsigned int row) const
+    {
+      return &column[row_start[row + 1] - n_upper(row)];
+    }
 
     /** Bytes held. */
     std::size_t
@@ -45,13 +67,14 @@ namespace ACF
   /**
    * A symmetric matrix $m_{ab}$ that acts on each component alike:
    * $y_a = \sum_b m_{ab} x_b$ with $x_b \in R^3$, that is $m \otimes I_3$.
-   * The mass matrix of a body.
+   * The mass matrix of a body. Holds the entries with $a \le b$.
    */
   class ScalarNodeMatrix
   {
   public:
     explicit ScalarNodeMatrix(const std::shared_ptr<const NodeGraph> &graph);
 
+    /** Adds to an entry if row <= col, as the others are not held. */
     void
     add(const unsigned int row, const unsigned int col, const double value);
 
@@ -61,7 +84,8 @@ namespace ACF
 
     /** The same for several vectors, for which the matrix is read once. */
     void
-    vmult(std::vector<NodalVector> &y, const std::vector<NodalVector> &x) const;
+    vmult(const std::vector<NodalVector *> &y,
+          const std::vector<const NodalVector *> &x) const;
 
     /** Row sums $\sum_b m_{ab}$, size n_nodes. */
     std::vector<double>
@@ -73,11 +97,11 @@ namespace ACF
       return *node_graph;
     }
 
-    /** Entry at a position of the graph. */
+    /** $m_{ab}$, which must be an entry of the graph. */
     double
-    value(const std::size_t position) const
+    value(const unsigned int a, const unsigned int b) const
     {
-      return values[position];
+      return values[node_graph->upper_entry(std::min(a, b), std::max(a, b))];
     }
 
     std::size_t
@@ -90,9 +114,32 @@ namespace ACF
 
 
 
+  /** A 3x3 block $A_{ab}$ of a BlockNodeMatrix. */
+  class NodeBlock
+  {
+  public:
+    /** @param block nine numbers row by row */
+    NodeBlock(const double *block, const bool transposed)
+      : block(block)
+      , transposed(transposed)
+    {}
+
+    double
+    operator()(const unsigned int i, const unsigned int j) const
+    {
+      return transposed ? block[3 * j + i] : block[3 * i + j];
+    }
+
+  private:
+    const double *block;
+    bool transposed;
+  };
+
+
+
   /**
    * A symmetric matrix of 3x3 blocks, $y_a = \sum_b A_{ab} x_b$. The stiffness
-   * matrix of a body.
+   * matrix of a body. Holds the blocks with $a \le b$.
    */
   class BlockNodeMatrix
   {
@@ -103,6 +150,7 @@ namespace ACF
     BlockNodeMatrix &
     operator=(const double value);
 
+    /** Adds to a block if row <= col, as the others are not held. */
     void
     add(const unsigned int row, const unsigned int col, const Matrix3 &block);
 
@@ -112,7 +160,8 @@ namespace ACF
 
     /** The same for several vectors, for which the matrix is read once. */
     void
-    vmult(std::vector<NodalVector> &y, const std::vector<NodalVector> &x) const;
+    vmult(const std::vector<NodalVector *> &y,
+          const std::vector<const NodalVector *> &x) const;
 
     const NodeGraph &
     graph() const
@@ -120,12 +169,13 @@ namespace ACF
       return *node_graph;
     }
 
-    /** The nine entries, row by row, of the block at a position of the graph.
-     */
-    const double *
-    block(const std::size_t position) const
+    /** $A_{ab}$, which must be an entry of the graph. */
+    NodeBlock
+    block(const unsigned int a, const unsigned int b) const
     {
-      return &values[9 * position];
+      return {
+        &values[9 * node_graph->upper_entry(std::min(a, b), std::max(a, b))],
+        a > b};
     }
 
     std::size_t

@@ -97,13 +97,15 @@ namespace ACF
   /**
    * The forces of reduced_strain_force() at several positions, for which the
    * stiffness matrix is read once.
+   * @param scratch work space, for the next call
    * @return false if a mean deformation gradient has no rotation
    */
   bool
   reduced_strain_forces(const BodyOperators &body,
                         const RotationMeasure measure,
-                        const std::vector<NodalVector> &positions,
-                        std::vector<NodalVector> &forces);
+                        const std::vector<const NodalVector *> &positions,
+                        const std::vector<NodalVector *> &forces,
+                        std::vector<NodalVector> &scratch);
 
   /**
    * The force of reduced_strain_force() with Rayleigh damping in the rotating

@@ -75,7 +75,7 @@ namespace ACF
   {
   public:
     /** Contractions up to this one are good enough for single precision. */
-    static constexpr double largest_contraction = 1e-4;
+    static constexpr double largest_contraction = 1e-3;
 
     /**
      * @param body provides the mass

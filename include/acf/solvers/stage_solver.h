@@ -114,10 +114,13 @@ namespace ACF
                       StageConstraints &constraints) override;
 
   private:
+    /** Adds what a component gives; the first one replaces the increments,
+     * after it has read the right-hand sides. */
     template <typename Number>
     void
     solve_component(const StageDiagonalization::Component &component,
                     CoupledSystem<Number> &coupled_system,
+                    const bool is_first,
                     const StageVector *stages,
                     const StageConstraints &constraints,
                     StageVector &stage_increments,
@@ -139,6 +142,9 @@ namespace ACF
     std::vector<std::unique_ptr<CoupledSystem<double>>> real_systems;
     std::vector<std::unique_ptr<CoupledSystem<std::complex<double>>>>
       complex_systems;
+
+    /** Right-hand sides that several components read. */
+    StageVector work;
   };
 
 

@@ -56,7 +56,7 @@ namespace ACF
     bool
     residual(StageVector &forces,
              StageConstraints &constraints,
-             std::string &failure) const;
+             std::string &failure);
 
     /** $\Phi$ in each stage. */
     StageConstraints
@@ -103,26 +103,23 @@ namespace ACF
     StageConstraints multipliers;
 
   private:
-    /** States of a body in the stages. */
-    struct BodyStages
-    {
-      std::vector<NodalVector> positions;
+    void
+    set_position(const unsigned int stage,
+                 const unsigned int body,
+                 NodalVector &x) const;
 
-      /** Only if forces depend on them. */
-      std::vector<NodalVector> velocities;
-
-      std::vector<NodalVector> accelerations;
-    };
+    void
+    set_velocity(const unsigned int stage,
+                 const unsigned int body,
+                 NodalVector &v) const;
 
     /**
-     * What a body and its loads alone give to the residual.
-     * @param[out] stages the states at which that is
+     * What a body and its loads alone give to the residual, and its states in
+     * the stages.
      * @return false if the body is turned inside out
      */
     bool
-    body_residual(const unsigned int body,
-                  BodyStages &stages,
-                  StageVector &residual) const;
+    body_residual(const unsigned int body, StageVector &residual);
 
     void
     add_material_rotations(const unsigned int body,
@@ -145,6 +142,20 @@ namespace ACF
 
     const SystemState *state = nullptr;
     double tau               = 0;
+
+    /** States in the stages when the residual was computed last; velocities
+     * only if forces depend on them. */
+    StageVector stage_positions;
+    StageVector stage_velocities;
+    StageVector stage_accelerations;
+
+    /** Work space of each body. */
+    struct Work
+    {
+      std::vector<NodalVector> inertia;
+      std::vector<NodalVector> forces;
+    };
+    std::vector<Work> work;
   };
 } // namespace ACF
 

@@ -60,13 +60,7 @@ namespace ACF
     static constexpr unsigned int max_terms   = 3;
     static constexpr unsigned int max_targets = 3;
 
-    /** Adds extrapolated accelerations, as increments. */
-    void
-    extrapolate(const StageHistory &history,
-                const unsigned int body,
-                const double factor,
-                StageVector &increments) const;
-
+    /** Adds extrapolated multipliers. */
     void
     extrapolate(const StageHistory &history,
                 const double factor,

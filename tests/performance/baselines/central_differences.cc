@@ -17,11 +17,10 @@ namespace Baselines
     std::vector<double> masses = body.mass_matrix.row_sums();
     if (*std::min_element(masses.begin(), masses.end()) > 0)
       return masses;
-    const NodeGraph &graph = body.mass_matrix.graph();
-    double sum             = 0;
+    double sum = 0;
     for (unsigned int a = 0; a < body.n_nodes; ++a)
       {
-        masses[a] = body.mass_matrix.value(graph.entry(a, a));
+        masses[a] = body.mass_matrix.value(a, a);
         sum += masses[a];
       }
     for (double &mass : masses)

@@ -119,8 +119,8 @@ namespace Baselines
             for (unsigned int j = 0; j < (b < a ? dim : i + 1); ++j)
               add_entry(first + dim * a + i,
                         first + dim * b + j,
-                        (stiffness ? stiffness->block(e)[dim * i + j] : 0.) +
-                          (i == j ? shift * mass.value(e) : 0.));
+                        (stiffness ? stiffness->block(a, b)(i, j) : 0.) +
+                          (i == j ? shift * mass.value(a, b) : 0.));
   }
 
 
