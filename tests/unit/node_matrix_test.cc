@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/linear_combination.h>
+#include <acf/base/parallel.h>
+#include <acf/mechanics/node_matrix.h>
+
+#include <deal.II/base/multithread_info.h>
+
+#include <cmath>
+
+#include <unit/mechanics_test.h>
+
+using namespace ACF;
+using namespace ACF::Testing;
+
+namespace
+{
+  // Some nodes are coupled to far ones, across the parts of two threads.
+  bool
+  are_coupled(const unsigned int a, const unsigned int b)
+  {
+    const unsigned int distance = a < b ? b - a : a - b;
+    return distance <= 2 || distance == 17 ||
+           (distance == 3000 && a % 5 == b % 5);
+  }
+
+  std::shared_ptr<const NodeGraph>
+  make_graph(const unsigned int n_nodes)
+  {
+    std::vector<std::size_t> row_start{0};
+    std::vector<unsigned int> column;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      {
+        for (const int step : {-3000, -17, -2, -1, 0, 1, 2, 17, 3000})
+          {
+            const long b = static_cast<long>(a) + step;
+            if (b >= 0 && b < n_nodes && are_coupled(a, b))
+              column.push_back(b);
+          }
+        row_start.push_back(column.size());
+      }
+    return std::make_shared<const NodeGraph>(row_start, column);
+  }
+
+  // Symmetric; blocks are not.
+  double
+  entry(const unsigned int k, const unsigned int l)
+  {
+    return std::sin(1 + std::min(k, l) + 0.37 * std::max(k, l));
+  }
+
+  double
+  mass(const unsigned int a, const unsigned int b)
+  {
+    return std::cos(1. * a + b);
+  }
+
+  struct Matrices
+  {
+    explicit Matrices(const std::shared_ptr<const NodeGraph> &graph)
+      : blocks(graph)
+      , scalars(graph)
+    {
+      for (unsigned int a = 0; a < graph->n_nodes(); ++a)
+        for (std::size_t e = graph->row_start[a]; e < graph->row_start[a + 1];
+             ++e)
+          {
+            const unsigned int b = graph->column[e];
+            Matrix3 block;
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                block[i][j] = entry(dim * a + i, dim * b + j);
+            blocks.add(a, b, block);
+            scalars.add(a, b, mass(a, b));
+          }
+    }
+
+    BlockNodeMatrix blocks;
+    ScalarNodeMatrix scalars;
+  };
+
+  // Entry by entry, from the definitions.
+  NodalVector
+  product(const NodeGraph &graph, const NodalVector &x, const bool with_blocks)
+  {
+    NodalVector y(x.size());
+    for (unsigned int a = 0; a < graph.n_nodes(); ++a)
+      for (std::size_t e = graph.row_start[a]; e < graph.row_start[a + 1]; ++e)
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            {
+              const unsigned int k = dim * a + i;
+              const unsigned int l = dim * graph.column[e] + j;
+              if (with_blocks)
+                y[k] += entry(k, l) * x[l];
+              else if (i == j)
+                y[k] += mass(a, graph.column[e]) * x[l];
+            }
+    return y;
+  }
+
+  std::vector<NodalVector>
+  test_vectors(const unsigned int n_vectors, const unsigned int size)
+  {
+    std::vector<NodalVector> x(n_vectors, NodalVector(size));
+    for (unsigned int v = 0; v < n_vectors; ++v)
+      for (unsigned int k = 0; k < size; ++k)
+        x[v][k] = std::sin(0.1 * k * (v + 1) + v);
+    return x;
+  }
+
+  // Restores the number of threads.
+  struct ThreadLimit
+  {
+    ThreadLimit()
+      : n_threads(MultithreadInfo::n_threads())
+    {}
+
+    ~ThreadLimit()
+    {
+      MultithreadInfo::set_thread_limit(n_threads);
+    }
+
+    const unsigned int n_threads;
+  };
+} // namespace
+
+TEST(NodeMatrix, ProductsWithSeveralVectorsAndThreads)
+{
+  const ThreadLimit threads;
+  double error = 0;
+  for (const unsigned int n_nodes : {1, 4, 30, 9001})
+    {
+      const auto graph = make_graph(n_nodes);
+      const Matrices matrices(graph);
+      for (const unsigned int n_vectors : {1, 2, 3, 5, 6})
+        {
+          const auto x = test_vectors(n_vectors, dim * n_nodes);
+          for (const unsigned int n_threads : {1, 2, 3})
+            for (const bool with_blocks : {true, false})
+              {
+                MultithreadInfo::set_thread_limit(n_threads);
+                std::vector<NodalVector> y(x);
+                std::vector<NodalVector *> targets;
+                std::vector<const NodalVector *> sources;
+                for (unsigned int v = 0; v < n_vectors; ++v)
+                  {
+                    y[v] = 1e10; // to be overwritten
+                    targets.push_back(&y[v]);
+                    sources.push_back(&x[v]);
+                  }
+                if (with_blocks)
+                  matrices.blocks.vmult(targets, sources);
+                else
+                  matrices.scalars.vmult(targets, sources);
+                for (unsigned int v = 0; v < n_vectors; ++v)
+                  {
+                    y[v] -= product(*graph, x[v], with_blocks);
+                    error = std::max(error, y[v].linfty_norm());
+                  }
+              }
+        }
+    }
+  // sums of up to 27 products of numbers up to 1
+  EXPECT_LT(error, 1e-14);
+  report("products with node matrices", error);
+}
+
+TEST(NodeMatrix, BlocksAndRowSums)
+{
+  const auto graph = make_graph(40);
+  const Matrices matrices(graph);
+  const std::vector<double> sums = matrices.scalars.row_sums();
+  for (unsigned int a = 0; a < 40; ++a)
+    {
+      double sum = 0;
+      for (unsigned int b = 0; b < 40; ++b)
+        if (are_coupled(a, b))
+          {
+            sum += mass(a, b);
+            EXPECT_EQ(matrices.scalars.value(a, b), mass(a, b));
+            const NodeBlock block = matrices.blocks.block(a, b);
+            for (unsigned int i = 0; i < dim; ++i)
+              for (unsigned int j = 0; j < dim; ++j)
+                EXPECT_EQ(block(i, j), entry(dim * a + i, dim * b + j));
+          }
+      EXPECT_NEAR(sums[a], sum, 1e-14);
+    }
+}
+
+TEST(LinearCombination, AnyNumberOfTerms)
+{
+  const ThreadLimit threads;
+  for (const unsigned int size : {1, 7, 8, 1000, 20001})
+    for (unsigned int n = 1; n <= 7; ++n)
+      for (const unsigned int n_threads : {1, 2})
+        {
+          MultithreadInfo::set_thread_limit(n_threads);
+          std::vector<NodalVector> x = test_vectors(n, size);
+          std::vector<ScaledVector> terms;
+          for (unsigned int k = 0; k < n; ++k)
+            terms.push_back({1.5 - k, &x[k]});
+          NodalVector expected(size), y;
+          for (unsigned int k = 0; k < n; ++k)
+            expected.add(1.5 - k, x[k]);
+          linear_combination(terms, y);
+          linear_combination(terms, x[0]);
+          EXPECT_EQ(y.size(), size);
+          EXPECT_EQ(x[0], y);
+          y -= expected;
+          EXPECT_LT(y.linfty_norm(), 1e-14);
+        }
+}
+
+TEST(Parallel, SumsDoNotDependOnTiming)
+{
+  const ThreadLimit threads;
+  const unsigned int n = 100000;
+  const auto sum       = [](const std::size_t begin, const std::size_t end) {
+    double result = 0;
+    for (std::size_t k = begin; k < end; ++k)
+      result += 1. / (1 + k);
+    return result;
+  };
+  MultithreadInfo::set_thread_limit(3);
+  const double first = sum_ranges<double>(n, sum);
+  // Euler's constant and the first terms of the asymptotic series
+  EXPECT_NEAR(first, std::log(n) + 0.5772156649015329 + 0.5 / n, 1e-10);
+  for (unsigned int repetition = 0; repetition < 20; ++repetition)
+    EXPECT_EQ(sum_ranges<double>(n, sum), first);
+}
