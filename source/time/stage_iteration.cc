@@ -166,10 +166,11 @@ namespace ACF
     double length                          = 0;
     for (const Body &body : system.bodies())
       length = std::max(length, body.operators().length);
-    const double tolerance = 1e-14 * std::max(1., length);
+    length = std::max(1., length);
 
-    StageVector increment(equations.increments);
-    for (unsigned int k = 0; k < max_corrections; ++k)
+    StageVector increment;
+    double before = std::numeric_limits<double>::infinity();
+    for (unsigned int k = 0; k <= max_corrections; ++k)
       {
         StageConstraints constraints = equations.constraint_residual();
         double largest               = 0;
@@ -178,8 +179,16 @@ namespace ACF
             rows *= -1;
             largest = std::max(largest, rows.lpNorm<Eigen::Infinity>());
           }
-        if (!(largest > tolerance))
+        // What a correction does not make smaller is round-off, and will be
+        // the same in later steps.
+        if (largest > 0.5 * before && largest < 1e-11 * length)
+          constraint_round_off = std::max(constraint_round_off, largest);
+        if (k == max_corrections ||
+            !(largest > std::max(1e-14 * length, 2 * constraint_round_off)))
           return;
+        before = largest;
+        if (increment.empty())
+          increment = equations.increments;
         stage_solver->solve_constraints(increment, constraints);
         ++statistics.constraint_corrections;
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)

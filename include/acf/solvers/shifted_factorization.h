@@ -74,8 +74,9 @@ namespace ACF
   class ShiftedFactorization
   {
   public:
-    /** Contractions up to this one are good enough for single precision. */
-    static constexpr double largest_contraction = 1e-3;
+    /** Contractions up to this one are good enough for single precision: in the
+     * worst case they take one more solve, of half the bytes. */
+    static constexpr double largest_contraction = 0.03;
 
     /**
      * @param body provides the mass

@@ -274,6 +274,9 @@ namespace ACF
     /** Of the present prediction. */
     StageRotations rotations;
 
+    /** Residual of the constraints that corrections do not reduce. */
+    double constraint_round_off = 0;
+
     Linearization linearization = Linearization::simplified;
 
     /** Bodies for which the simplified linearisation is not enough. */
