@@ -21,9 +21,6 @@
 #include <ostream>
 #include <sstream>
 
-extern "C" void
-openblas_set_num_threads(int n_threads);
-
 namespace ACF
 {
   namespace
@@ -455,7 +452,6 @@ namespace ACF
 
     if (command_line.n_threads > 0)
       MultithreadInfo::set_thread_limit(command_line.n_threads);
-    openblas_set_num_threads(MultithreadInfo::n_threads());
 
     const ParameterFile file(command_line.model, command_line.overrides);
     const Model model = read_model(file);

@@ -20,53 +20,6 @@ namespace ACF
 
 
 
-  void
-  FirstIteration::start_step(const double tau, const int linearization)
-  {
-    if (step_size != tau || kind != linearization)
-      {
-        step_size     = tau;
-        kind          = linearization;
-        factor        = 1;
-        previous_norm = 0;
-        is_measured   = false;
-      }
-  }
-
-
-
-  double
-  FirstIteration::error(const double norm) const
-  {
-    constexpr unsigned int max_age  = 16;
-    constexpr double growth         = 1.1;
-    constexpr double largest_change = 4;
-    if (!is_measured || age >= max_age || norm > largest_change * previous_norm)
-      return std::max(1., factor) * norm;
-    return factor * std::pow(growth, age) * norm;
-  }
-
-
-
-  void
-  FirstIteration::end_step(const std::vector<double> &norms)
-  {
-    previous_norm = norms[0];
-    ++age;
-    if (norms.size() == 1)
-      return;
-    // the first contraction may be better than those that follow
-    double largest = 0;
-    for (unsigned int k = 1; k < norms.size(); ++k)
-      largest = std::max(largest, norms[k] / norms[k - 1]);
-    factor      = std::max(norms[1] / norms[0] / (1 - std::min(largest, 0.9)),
-                      std::numeric_limits<double>::epsilon());
-    age         = 0;
-    is_measured = true;
-  }
-
-
-
   StageIteration::StageIteration(const MultibodySystem &system,
                                  const ButcherTableau &tableau,
                                  const TimeParameters &parameters,
@@ -327,9 +280,8 @@ namespace ACF
       report.failure = "the iteration diverges";
     else if (predicted > tolerances.error)
       report.failure = "the iteration contracts too slowly";
-    // what round-off allows may be good enough
-    if (!report.failure.empty() &&
-        report.error_estimate <= tolerances.round_off)
+    // What does not get shorter may be round-off, and is then the error.
+    if (!report.failure.empty() && norm <= tolerances.round_off)
       {
         report.failure.clear();
         report.converged = true;

@@ -19,6 +19,7 @@ STYLES = {
     "tolerance, 2 stages": ("tab:green", "^"),
     "tolerance, 3 stages": ("limegreen", "v"),
     "one-step matrices": ("tab:orange", "D"),
+    "scheme of the paper": ("saddlebrown", "D"),
     "conventional": ("tab:red", "X"),
     "conventional, 1 iteration": ("lightcoral", "x"),
     "CalculiX": ("tab:purple", "*"),
