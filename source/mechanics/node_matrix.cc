@@ -94,6 +94,52 @@ namespace ACF
 
 
 
+    // The kinds of entries: y_a += A_ab x_b and y_b += A_ab^T x_a for an entry
+    // at p.
+    struct Block
+    {
+      static constexpr unsigned int size = 9;
+
+      template <typename Lanes>
+      ACF_INLINE static Lanes
+      product(const double *const p, const Lanes &x)
+      {
+        return block_column(p, 0, Lanes()) * splat<0>(x) +
+               block_column(p, 1, Lanes()) * splat<1>(x) +
+               block_column(p, 2, Lanes()) * splat<2>(x);
+      }
+
+      template <typename Lanes>
+      ACF_INLINE static Lanes
+      transposed_product(const double *const p, const Lanes &x)
+      {
+        return block_row(p, 0, Lanes()) * splat<0>(x) +
+               block_row(p, 1, Lanes()) * splat<1>(x) +
+               block_row(p, 2, Lanes()) * splat<2>(x);
+      }
+    };
+
+    struct Scalar
+    {
+      static constexpr unsigned int size = 1;
+
+      template <typename Lanes>
+      ACF_INLINE static Lanes
+      product(const double *const p, const Lanes &x)
+      {
+        return *p * x;
+      }
+
+      template <typename Lanes>
+      ACF_INLINE static Lanes
+      transposed_product(const double *const p, const Lanes &x)
+      {
+        return *p * x;
+      }
+    };
+
+
+
     // Some rows of a product.
     struct Rows
     {
@@ -108,10 +154,9 @@ namespace ACF
 
 
 
-    // With A_ab also A_ba = A_ab^T.
-    template <unsigned int n>
+    template <unsigned int n, typename Entry>
     ACF_INLINE void
-    multiply_blocks(const Rows &rows)
+    multiply_entries(const Rows &rows)
     {
       using Lanes                     = typename Layout<n>::Lanes;
       constexpr unsigned int n_groups = Layout<n>::n_groups;
@@ -123,61 +168,20 @@ namespace ACF
         {
           const std::size_t n_entries      = graph.n_upper(a);
           const unsigned int *const column = graph.upper_columns(a);
-          const double *A = rows.values + 9 * graph.upper_start[a];
-          for (unsigned int g = 0; g < n_groups; ++g)
-            {
-              const std::size_t shift = g * width;
-              const Lanes x_a  = load(rows.x + n_lanes * a + shift, Lanes());
-              const Lanes x_a0 = splat<0>(x_a), x_a1 = splat<1>(x_a),
-                          x_a2 = splat<2>(x_a);
-              Lanes sum        = block_column(A, 0, Lanes()) * x_a0 +
-                          block_column(A, 1, Lanes()) * x_a1 +
-                          block_column(A, 2, Lanes()) * x_a2;
-              for (std::size_t e = 1; e < n_entries; ++e)
-                {
-                  const double *const A_ab = A + 9 * e;
-                  const std::size_t b      = n_lanes * column[e] + shift;
-                  const Lanes x_b          = load(rows.x + b, Lanes());
-                  sum += block_column(A_ab, 0, Lanes()) * splat<0>(x_b) +
-                         block_column(A_ab, 1, Lanes()) * splat<1>(x_b) +
-                         block_column(A_ab, 2, Lanes()) * splat<2>(x_b);
-                  *reinterpret_cast<Lanes *>(y + b) +=
-                    block_row(A_ab, 0, Lanes()) * x_a0 +
-                    block_row(A_ab, 1, Lanes()) * x_a1 +
-                    block_row(A_ab, 2, Lanes()) * x_a2;
-                }
-              *reinterpret_cast<Lanes *>(y + n_lanes * a + shift) += sum;
-            }
-        }
-    }
-
-
-
-    template <unsigned int n>
-    ACF_INLINE void
-    multiply_scalars(const Rows &rows)
-    {
-      using Lanes                     = typename Layout<n>::Lanes;
-      constexpr unsigned int n_groups = Layout<n>::n_groups;
-      constexpr unsigned int n_lanes  = Layout<n>::n_lanes;
-      constexpr unsigned int width    = n_lanes / n_groups;
-      const NodeGraph &graph          = rows.graph;
-      double *const y                 = rows.y - n_lanes * rows.begin;
-      for (std::size_t a = rows.begin; a < rows.end; ++a)
-        {
-          const std::size_t n_entries      = graph.n_upper(a);
-          const unsigned int *const column = graph.upper_columns(a);
-          const double *const m            = rows.values + graph.upper_start[a];
+          const double *const entries =
+            rows.values + Entry::size * graph.upper_start[a];
           for (unsigned int g = 0; g < n_groups; ++g)
             {
               const std::size_t shift = g * width;
               const Lanes x_a = load(rows.x + n_lanes * a + shift, Lanes());
-              Lanes sum       = m[0] * x_a;
+              Lanes sum       = Entry::product(entries, x_a);
               for (std::size_t e = 1; e < n_entries; ++e)
                 {
-                  const std::size_t b = n_lanes * column[e] + shift;
-                  sum += m[e] * load(rows.x + b, Lanes());
-                  *reinterpret_cast<Lanes *>(y + b) += m[e] * x_a;
+                  const double *const A_ab = entries + Entry::size * e;
+                  const std::size_t b      = n_lanes * column[e] + shift;
+                  sum += Entry::product(A_ab, load(rows.x + b, Lanes()));
+                  *reinterpret_cast<Lanes *>(y + b) +=
+                    Entry::transposed_product(A_ab, x_a);
                 }
               *reinterpret_cast<Lanes *>(y + n_lanes * a + shift) += sum;
             }
@@ -186,15 +190,12 @@ namespace ACF
 
 
 
-    // One function per kind of matrix and instruction set.
-#define ACF_PRODUCTS(name, attributes)                                 \
-  template <unsigned int n>                                            \
-  attributes void multiply_##name(const Rows &rows, const bool blocks) \
-  {                                                                    \
-    if (blocks)                                                        \
-      multiply_blocks<n>(rows);                                        \
-    else                                                               \
-      multiply_scalars<n>(rows);                                       \
+    // One function per instruction set.
+#define ACF_PRODUCTS(name, attributes)              \
+  template <unsigned int n, typename Entry>         \
+  attributes void multiply_##name(const Rows &rows) \
+  {                                                 \
+    multiply_entries<n, Entry>(rows);               \
   }
 
     ACF_PRODUCTS(any, )
@@ -204,17 +205,17 @@ namespace ACF
 #endif
 #undef ACF_PRODUCTS
 
-    template <unsigned int n>
+    template <unsigned int n, typename Entry>
     void
-    multiply_rows(const Rows &rows, const bool blocks)
+    multiply_rows(const Rows &rows)
     {
 #if defined(__x86_64__)
       if (present_processor() == Processor::avx512)
-        return multiply_avx512<n>(rows, blocks);
+        return multiply_avx512<n, Entry>(rows);
       if (present_processor() == Processor::avx2)
-        return multiply_avx2<n>(rows, blocks);
+        return multiply_avx2<n, Entry>(rows);
 #endif
-      multiply_any<n>(rows, blocks);
+      multiply_any<n, Entry>(rows);
     }
 
 
@@ -246,11 +247,10 @@ namespace ACF
 
 
 
-    template <unsigned int n>
+    template <unsigned int n, typename Entry>
     void
     multiply(const NodeGraph &graph,
              const std::vector<double> &values,
-             const bool blocks,
              NodalVector *const *const y,
              const NodalVector *const *const x)
     {
@@ -276,13 +276,12 @@ namespace ACF
       run_tasks(parts.size(), [&](const unsigned int p) {
         Part &part = parts[p];
         part.y.resize(n_lanes * (part.reach - part.begin));
-        multiply_rows<n>({graph,
-                          values.data(),
-                          part.begin,
-                          part.end,
-                          lanes.data(),
-                          part.y.data()},
-                         blocks);
+        multiply_rows<n, Entry>({graph,
+                                 values.data(),
+                                 part.begin,
+                                 part.end,
+                                 lanes.data(),
+                                 part.y.data()});
       });
 
       // of the part that has the row and of those before which reach it
@@ -306,10 +305,10 @@ namespace ACF
 
 
     // Two or three vectors at once, as there are stages.
+    template <typename Entry>
     void
     multiply(const NodeGraph &graph,
              const std::vector<double> &values,
-             const bool blocks,
              const std::vector<NodalVector *> &y,
              const std::vector<const NodalVector *> &x)
     {
@@ -317,11 +316,11 @@ namespace ACF
       unsigned int v = 0;
       if (x.size() % 3 == 0)
         for (; v < x.size(); v += 3)
-          multiply<3>(graph, values, blocks, &y[v], &x[v]);
+          multiply<3, Entry>(graph, values, &y[v], &x[v]);
       for (; v + 2 <= x.size(); v += 2)
-        multiply<2>(graph, values, blocks, &y[v], &x[v]);
+        multiply<2, Entry>(graph, values, &y[v], &x[v]);
       if (v < x.size())
-        multiply<1>(graph, values, blocks, &y[v], &x[v]);
+        multiply<1, Entry>(graph, values, &y[v], &x[v]);
     }
   } // namespace
 
@@ -389,7 +388,7 @@ namespace ACF
   void
   ScalarNodeMatrix::vmult(NodalVector &y, const NodalVector &x) const
   {
-    multiply(*node_graph, values, false, {&y}, {&x});
+    multiply<Scalar>(*node_graph, values, {&y}, {&x});
   }
 
 
@@ -398,7 +397,7 @@ namespace ACF
   ScalarNodeMatrix::vmult(const std::vector<NodalVector *> &y,
                           const std::vector<const NodalVector *> &x) const
   {
-    multiply(*node_graph, values, false, y, x);
+    multiply<Scalar>(*node_graph, values, y, x);
   }
 
 
@@ -467,7 +466,7 @@ namespace ACF
   void
   BlockNodeMatrix::vmult(NodalVector &y, const NodalVector &x) const
   {
-    multiply(*node_graph, values, true, {&y}, {&x});
+    multiply<Block>(*node_graph, values, {&y}, {&x});
   }
 
 
@@ -476,7 +475,7 @@ namespace ACF
   BlockNodeMatrix::vmult(const std::vector<NodalVector *> &y,
                          const std::vector<const NodalVector *> &x) const
   {
-    multiply(*node_graph, values, true, y, x);
+    multiply<Block>(*node_graph, values, y, x);
   }
 
 

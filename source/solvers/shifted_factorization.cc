@@ -148,6 +148,31 @@ namespace ACF
 
 
 
+  namespace
+  {
+    template <typename Real, typename Number>
+    std::unique_ptr<SupernodalFactor<Number, Real>>
+    factorize(const std::shared_ptr<const EliminationTree> &tree,
+              const ShiftedMatrix<Number> &matrix,
+              const unsigned int n_threads)
+    {
+      auto factor =
+        std::make_unique<SupernodalFactor<Number, Real>>(tree, n_threads);
+      factorize_multifrontal<Number>(*tree,
+                                     matrix,
+                                     [&](const unsigned int supernode,
+                                         const Number *columns,
+                                         const std::size_t leading_dimension) {
+                                       factor->store(supernode,
+                                                     columns,
+                                                     leading_dimension);
+                                     });
+      return factor;
+    }
+  } // namespace
+
+
+
   template <typename Number>
   ShiftedFactorization<Number>::ShiftedFactorization(
     const BodyOperators &body,
@@ -159,41 +184,32 @@ namespace ACF
     Timer timer;
     const ShiftedMatrix<Number> matrix = {body.mass_matrix, stiffness, shift};
     const unsigned int n_threads       = MultithreadInfo::n_threads();
-    if (precision != FactorPrecision::single_precision)
-      double_factor =
-        std::make_unique<SupernodalFactor<Number, double>>(tree, n_threads);
-    if (precision != FactorPrecision::double_precision)
-      single_factor =
-        std::make_unique<SupernodalFactor<Number, float>>(tree, n_threads);
-    factorize_multifrontal<Number>(
-      *tree,
-      matrix,
-      [&](const unsigned int supernode,
-          const Number *columns,
-          const std::size_t leading_dimension) {
-        if (double_factor)
-          double_factor->store(supernode, columns, leading_dimension);
-        if (single_factor)
-          single_factor->store(supernode, columns, leading_dimension);
-      });
 
     // the masses as load in all directions, which every body has
     Vector load(body.n_unknowns());
     for (unsigned int k = 0; k < load.size(); ++k)
       load[k] = body.nodal_masses[k / dim] * (1. + k % dim);
-    if (single_factor)
+
+    if (precision != FactorPrecision::double_precision)
       {
-        if (check_contraction(matrix, load))
-          double_factor.reset();
-        else if (double_factor)
-          single_factor.reset();
-        else
-          fail(load,
-               "corrections in single precision contract by " +
-                 text_of(factor_statistics.contraction));
+        single_factor = factorize<float>(tree, matrix, n_threads);
+        measure_contraction(matrix, load);
+        const bool is_single = precision == FactorPrecision::single_precision;
+        if (!(factor_statistics.contraction <=
+              (is_single ? 0.5 : largest_contraction)))
+          {
+            if (is_single)
+              fail(load,
+                   "corrections in single precision contract by " +
+                     text_of(factor_statistics.contraction));
+            single_factor.reset();
+          }
       }
-    if (double_factor)
-      check(matrix, load);
+    if (!single_factor)
+      {
+        double_factor = factorize<double>(tree, matrix, n_threads);
+        check(matrix, load);
+      }
 
     factor_statistics.single_precision = single_factor != nullptr;
     factor_statistics.n_entries        = tree->n_entries();
@@ -259,8 +275,8 @@ namespace ACF
 
 
   template <typename Number>
-  bool
-  ShiftedFactorization<Number>::check_contraction(
+  void
+  ShiftedFactorization<Number>::measure_contraction(
     const ShiftedMatrix<Number> &matrix,
     const Vector &load)
   {
@@ -281,8 +297,6 @@ namespace ACF
           std::isfinite(ratio) ? std::max(factor_statistics.contraction, ratio)
                                : std::numeric_limits<double>::infinity();
       }
-    return factor_statistics.contraction <=
-           (double_factor ? largest_contraction : 0.5);
   }
 
 

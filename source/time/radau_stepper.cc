@@ -122,13 +122,14 @@ namespace ACF
       return {parameters.newton_tolerance, 0};
     if (parameters.tolerance > 0)
       {
-        // errors of the iteration become errors of velocities when they are
-        // divided by the step size, which act for the rest of the time
-        const double part = equations.step_size() / parameters.end_time;
+        // Errors of the iteration become errors of velocities when they are
+        // divided by the step size, which act for the rest of the time: in the
+        // worst case they add up to this share of the tolerance.
+        constexpr double share = 0.5;
+        const double part      = equations.step_size() / parameters.end_time;
         const double error =
           std::max(least_tolerance,
-                   std::min(1e-9,
-                            newton_share * parameters.tolerance * part * part));
+                   std::min(1e-9, share * parameters.tolerance * part * part));
         return {error, std::max(largest_tolerance, error)};
       }
     if (expected_error < 0)

@@ -66,7 +66,8 @@ namespace ACF
    * The factor is computed in double precision. Kept in single precision it has
    * half the bytes, and solves need half the time; their relative error is then
    * about the contraction, which is good enough inside an iteration that
-   * corrects it.
+   * corrects it. FactorPrecision::automatic tries that first, and factorises
+   * again where it is not good enough.
    *
    * @tparam Number double or std::complex<double>
    */
@@ -128,9 +129,10 @@ namespace ACF
     void
     check(const ShiftedMatrix<Number> &matrix, const Vector &load);
 
-    /** Checks single precision. @return whether it is good enough */
-    bool
-    check_contraction(const ShiftedMatrix<Number> &matrix, const Vector &load);
+    /** How much corrections in single precision contract. */
+    void
+    measure_contraction(const ShiftedMatrix<Number> &matrix,
+                        const Vector &load);
 
     /** One of the two. */
     std::unique_ptr<SupernodalFactor<Number, double>> double_factor;
