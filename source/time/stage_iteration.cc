@@ -134,7 +134,7 @@ namespace ACF
           }
         // What a correction does not make smaller is round-off, and will be
         // the same in later steps.
-        if (largest > 0.5 * before && largest < 1e-11 * length)
+        if (largest > 0.5 * before && largest < 5e-13 * length)
           constraint_round_off = std::max(constraint_round_off, largest);
         if (k == max_corrections ||
             !(largest > std::max(1e-14 * length, 2 * constraint_round_off)))
