@@ -30,6 +30,8 @@ namespace ACF
         {"--validate", "", "read and check the model, run nothing"},
         {"--set", "'Section/Entry=value'", "override an entry; repeatable"},
         {"--output-directory", "DIR", "override the output directory"},
+        {"--restart", "CHECKPOINT", "go on from a checkpoint of the model"},
+        {"--overwrite", "", "delete earlier results instead of moving them"},
         {"--threads", "N", "use at most N threads; default: one per core"},
         {"--quiet", "", "print nothing but errors and warnings"}};
       return list;
@@ -84,6 +86,10 @@ namespace ACF
         result.overrides.push_back(value);
       else if (option.name == "--output-directory")
         result.output_directory = value;
+      else if (option.name == "--restart")
+        result.restart = value;
+      else if (option.name == "--overwrite")
+        result.overwrite = true;
       else if (option.name == "--threads")
         result.n_threads = parse_n_threads(value);
       else
@@ -131,6 +137,19 @@ namespace ACF
           fail("other arguments beside " + name, name + " alone");
     }
 
+    // Options of runs.
+    void
+    check_run(const CommandLine &command_line)
+    {
+      if (command_line.restart && command_line.overwrite)
+        fail("--restart and --overwrite", "one of them");
+      if (command_line.action != CommandLine::Action::run &&
+          (command_line.restart || command_line.overwrite))
+        fail(command_line.restart ? "--restart with --validate"
+                                  : "--overwrite with --validate",
+             "one of them");
+    }
+
     void
     check_models(const std::vector<std::string> &models)
     {
@@ -164,6 +183,7 @@ namespace ACF
         result.action == CommandLine::Action::validate)
       {
         check_models(models);
+        check_run(result);
         result.model = models[0];
       }
     return result;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/exceptions.h>
+#include <acf/base/input_problems.h>
+#include <acf/base/interruption.h>
 #include <acf/simulation.h>
 
 #include <deal.II/base/exceptions.h>
@@ -18,6 +19,13 @@ namespace
     try
       {
         throw;
+      }
+    catch (const ACF::InputErrors &errors)
+      {
+        for (const ACF::InputError &error : errors.errors())
+          std::cerr << "acf-dealii: " << error.what() << "\n";
+        std::cerr << std::flush;
+        return 2;
       }
     catch (const ACF::InputError &error)
       {
@@ -45,6 +53,7 @@ namespace
 int
 main(int argc, char **argv)
 {
+  ACF::ignore_signals_of_writes();
   try
     {
       ACF::run_command(ACF::parse_command_line({argv + 1, argv + argc}),

@@ -3,6 +3,8 @@
 
 #include <acf/mechanics/mesh_import.h>
 #include <acf/model.h>
+#include <acf/plausibility.h>
+#include <acf/references.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -124,27 +126,45 @@ namespace ACF
 
 
 
+    // All values that can be relied on.
     void
-    check_model(const Model &model)
+    check_model(const Model &model,
+                const ParameterFile &file,
+                InputProblems &problems)
     {
-      if (model.system.bodies.empty())
-        throw InputError("Bodies", "Names", "nothing", "at least one name");
-      const auto check_all = [](const auto &objects) {
+      const auto check_all = [&](const auto &objects) {
         for (const auto &object : objects)
-          object.check();
+          // most of what is wrong follows from a wrong type
+          if (!problems.is_doubtful(object.section(), "Type"))
+            file.check([&object]() { object.check(); }, problems);
       };
+      file.check(
+        [&model]() {
+          if (model.system.bodies.empty())
+            throw InputError("Bodies", "Names", "nothing", "at least one name");
+        },
+        problems);
       check_all(model.system.bodies);
       check_all(model.system.joints);
       check_all(model.system.force_elements);
       check_all(model.system.masses);
       check_all(model.system.surface_loads);
-      model.start.check();
+      check_all(model.probes);
+      file.check(
+        [&model]() {
+          TimeFunction(model.system.loads.gravity_factor,
+                       "Loads",
+                       "Gravity factor");
+        },
+        problems);
+      file.check([&model]() { model.start.check(); }, problems);
       // an End time of zero: nothing but the equilibrium or modes
       const bool may_be_static =
         model.start.equilibrium || model.modes.number > 0;
       if (!(may_be_static && model.time.end_time == 0))
-        model.time.check();
-      check_all(model.probes);
+        file.check([&model]() { model.time.check(); }, problems);
+      file.check([&model]() { check_amounts(model); }, problems);
+      check_references(model, file, problems);
     }
 
 
@@ -190,6 +210,18 @@ namespace ACF
                       "step. Units: s.",
                       Patterns::Double(0));
     vtu.add_parameters(prm);
+    prm.add_parameter("Checkpoint interval",
+                      checkpoint_interval,
+                      "Simulated time between two checkpoints, from which "
+                      "--restart goes on; zero: none but those of the wall "
+                      "time, and one when the simulation fails or is "
+                      "interrupted. Units: s.",
+                      Patterns::Double(0));
+    prm.add_parameter("Checkpoint wall interval",
+                      checkpoint_wall_interval,
+                      "Longest time that the program runs between two "
+                      "checkpoints; zero: none. Units: s.",
+                      Patterns::Double(0));
   }
 
 
@@ -199,24 +231,20 @@ namespace ACF
   {
     Model model;
     ParameterHandler prm;
+    InputProblems problems = file.problems();
     declare_model(prm,
                   model,
-                  {file.names("Bodies"),
-                   file.names("Joints"),
-                   file.names("Force elements"),
-                   file.names("Masses"),
-                   file.names("Loads"),
-                   file.names("Probes")});
-    file.parse(prm);
-    try
-      {
-        check_model(model);
-      }
-    catch (const InputError &error)
-      {
-        throw file.locate(error);
-      }
+                  {file.names("Bodies", problems),
+                   file.names("Joints", problems),
+                   file.names("Force elements", problems),
+                   file.names("Masses", problems),
+                   file.names("Loads", problems),
+                   file.names("Probes", problems)});
+    file.parse(prm, problems);
+    check_model(model, file, problems);
+    problems.throw_all();
 
+    model.warnings  = plausibility_warnings(model);
     model.directory = file.path().parent_path();
     if (model.output.directory.empty())
       model.output.directory = file.path().stem().string() + "-results";

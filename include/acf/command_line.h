@@ -37,6 +37,12 @@ namespace ACF
     /** Takes the place of the model's output directory. */
     std::optional<std::filesystem::path> output_directory;
 
+    /** The checkpoint to go on from. */
+    std::optional<std::filesystem::path> restart;
+
+    /** Whether results of an earlier run are deleted instead of moved. */
+    bool overwrite = false;
+
     /** Greatest number of threads; zero (not given): one per core. */
     unsigned int n_threads = 0;
 

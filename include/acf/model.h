@@ -22,6 +22,12 @@ namespace ACF
     /** s; zero: every step */
     double probe_interval = 0;
 
+    /** Simulated time between two checkpoints, s; 0: none. */
+    double checkpoint_interval = 0;
+
+    /** The same in wall time. */
+    double checkpoint_wall_interval = 600;
+
     VtuParameters vtu;
 
     void
@@ -45,12 +51,16 @@ namespace ACF
     /** Folder of the model file: relative mesh file names start here. */
     std::filesystem::path directory;
 
+    /** Sentences about values that are allowed but not plausible. */
+    std::vector<std::string> warnings;
+
     /** All values, as a model file. */
     std::string used_parameters;
   };
 
   /**
-   * @throws InputError with file and line
+   * Reads and checks all values before anything is done with them.
+   * @throws InputError with file and line; InputErrors for several
    */
   Model
   read_model(const ParameterFile &file);

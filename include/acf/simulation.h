@@ -4,16 +4,13 @@
 #ifndef acf_simulation_h
 #define acf_simulation_h
 
-#include <acf/base/statistics.h>
 #include <acf/command_line.h>
-#include <acf/mechanics/multibody_system.h>
 
 #include <iosfwd>
 
 namespace ACF
 {
   struct Model;
-  class ValidityMonitor;
 
   /**
    * Does what the command line asks for: runs or validates a model, or prints
@@ -28,26 +25,31 @@ namespace ACF
               std::ostream &stream,
               std::ostream &warnings);
 
+  /** What the command line says of a run. */
+  struct RunOptions
+  {
+    std::filesystem::path output_directory;
+
+    /** No messages but warnings. */
+    bool quiet = false;
+
+    /** The checkpoint to go on from. */
+    std::optional<std::filesystem::path> restart = {};
+
+    /** Whether results of an earlier run are deleted instead of moved. */
+    bool overwrite = false;
+  };
+
   /**
    * Runs a model and writes its results. Also a run that fails leaves its
-   * results so far and its statistics.
+   * results so far, its statistics and a checkpoint. Results of an earlier run
+   * in the same folder are moved into a folder of their own.
    */
   void
   run_model(const Model &model,
-            const std::filesystem::path &output_directory,
+            const RunOptions &options,
             std::ostream &stream,
-            std::ostream &warnings,
-            const bool quiet);
-
-  /**
-   * The statistics of a run as JSON text.
-   * @param validity of the bodies; null if nobody has watched it
-   */
-  std::string
-  statistics_json(const Statistics &statistics,
-                  const MultibodySystem &system,
-                  const ValidityMonitor *const validity,
-                  const bool finished);
+            std::ostream &warnings);
 } // namespace ACF
 
 #endif

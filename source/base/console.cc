@@ -59,12 +59,22 @@ namespace ACF
 
 
 
+  std::string
+  counted(const unsigned long n, const std::string &noun)
+  {
+    return std::to_string(n) + " " + noun + (n == 1 ? "" : "s");
+  }
+
+
+
   Progress::Progress(std::ostream &stream,
                      const bool enabled,
-                     const double end_time)
+                     const double end_time,
+                     const double start_time)
     : stream(stream)
     , enabled(enabled)
     , end_time(end_time)
+    , start_time(start_time)
     , start(Clock::now())
     , last_update(start - std::chrono::hours(1))
   {}
@@ -94,8 +104,9 @@ namespace ACF
     last_update = now;
 
     const double elapsed = std::chrono::duration<double>(now - start).count();
-    const double left =
-      std::max(0., elapsed * (end_time - time) / std::max(time, 1e-300));
+    const double left    = std::max(0.,
+                                 elapsed * (end_time - time) /
+                                   std::max(time - start_time, 1e-300));
     std::ostringstream line;
     line << "t = " << format_number(time) << " of " << format_number(end_time)
          << " s, step " << n_steps << " (" << format_number(step_size) << " s, "

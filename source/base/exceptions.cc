@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
+#include <acf/base/parameter_patterns.h>
 
 namespace ACF
 {
@@ -15,10 +16,11 @@ namespace ACF
     {
       std::string message;
       if (!section.empty())
-        message += "section '" + section + "', ";
+        message += "section " + in_quotes(section) + ", ";
       if (!entry.empty())
-        message += "entry '" + entry + "': ";
-      return message + "found " + found + "; allowed: " + allowed;
+        message += "entry " + in_quotes(entry) + ": ";
+      return message + "found " + shorten(found) +
+             "; allowed: " + shorten(allowed);
     }
   } // namespace
 

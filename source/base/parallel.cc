@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/parallel.h>
+#include <acf/base/thread_order.h>
 
 #include <deal.II/base/multithread_info.h>
 
@@ -24,10 +25,23 @@ namespace ACF
             const std::function<void(unsigned int)> &task)
   {
     if (n_tasks == 1 || dealii::MultithreadInfo::n_threads() == 1)
-      for (unsigned int i = 0; i < n_tasks; ++i)
+      {
+        for (unsigned int i = 0; i < n_tasks; ++i)
+          task(i);
+        return;
+      }
+    const char end = 0; // its address stands for the end of the tasks
+    publish_order(&task);
+    tbb::parallel_for(
+      0U,
+      n_tasks,
+      [&](const unsigned int i) {
+        observe_order(&task);
         task(i);
-    else
-      tbb::parallel_for(0U, n_tasks, task, tbb::simple_partitioner());
+        publish_order(&end);
+      },
+      tbb::simple_partitioner());
+    observe_order(&end);
   }
 
 

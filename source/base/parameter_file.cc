@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/input_file.h>
 #include <acf/base/parameter_file.h>
 #include <acf/base/parameter_patterns.h>
 
@@ -9,8 +10,8 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <fstream>
 #include <map>
+#include <set>
 #include <sstream>
 
 namespace ACF
@@ -19,65 +20,8 @@ namespace ACF
   {
     using Json = nlohmann::ordered_json;
 
-    std::string
-    join(const std::string &section, const std::string &name)
-    {
-      return section.empty() ? name : section + "/" + name;
-    }
-
-    std::string
-    read_file(const std::filesystem::path &file)
-    {
-      const auto fail = [&file](const std::string &found) {
-        throw InputError("found " + found + "; allowed: a model file")
-          .located(file.string(), 0);
-      };
-      std::error_code error;
-      const std::filesystem::file_status status =
-        std::filesystem::status(file, error);
-      if (!std::filesystem::exists(status))
-        fail("no such file");
-      if (std::filesystem::is_directory(status))
-        fail("a directory");
-      if (!std::filesystem::is_regular_file(status) &&
-          !std::filesystem::is_fifo(status))
-        fail("a device");
-
-      std::ifstream stream(file, std::ios::binary);
-      std::ostringstream text;
-      // an empty file sets the fail bit of text, not that of stream
-      if (stream)
-        text << stream.rdbuf();
-      if (!stream)
-        fail("a file that cannot be read");
-      return text.str();
-    }
-
-    /** Position of the first byte that is not text in UTF-8, or npos. */
-    std::size_t
-    find_non_text(const std::string &text)
-    {
-      unsigned int n_continuation_bytes = 0;
-      for (std::size_t i = 0; i < text.size(); ++i)
-        {
-          const unsigned char byte = text[i];
-          const bool line_end =
-            byte == '\n' ||
-            (byte == '\r' && (i + 1 == text.size() || text[i + 1] == '\n'));
-          const bool control =
-            (byte < 0x20 && byte != '\t' && !line_end) || byte == 0x7f;
-          const bool continues = (byte & 0xc0) == 0x80;
-          if (control || continues != (n_continuation_bytes > 0) ||
-              byte == 0xc0 || byte == 0xc1 || byte > 0xf4)
-            return i;
-          n_continuation_bytes = continues      ? n_continuation_bytes - 1
-                                 : byte >= 0xf0 ? 3
-                                 : byte >= 0xe0 ? 2
-                                 : byte >= 0xc0 ? 1
-                                                : 0;
-        }
-      return n_continuation_bytes > 0 ? text.size() - 1 : std::string::npos;
-    }
+    // The declarations of a body take 300 kB.
+    constexpr std::size_t max_names = 10000;
 
     bool
     is_suitable_name(const std::string &name)
@@ -122,22 +66,30 @@ namespace ACF
     }
 
     const Json &
-    declared_section(const Json &tree, const std::string &path)
+    declared_section(const Json &tree,
+                     const std::string &path,
+                     InputProblems &problems)
     {
       const Json *section = &tree;
       std::string parent;
       for (const std::string &name : Utilities::split_string_list(path, '/'))
         {
-          const auto names = declared_names(*section, false);
-          if (std::find(names.begin(), names.end(), name) == names.end())
-            throw InputError(parent,
-                             "",
-                             "the unknown subsection " + in_quotes(name),
-                             names.empty() ? "no subsection"
-                                           : list_words(names, "'") +
-                                               suggestion(name, names));
+          if (!section->is_object() || !section->contains(name) ||
+              is_entry((*section)[name]))
+            {
+              const auto names        = declared_names(*section, false);
+              const std::string meant = nearest(name, names);
+              if (!meant.empty())
+                problems.doubt(join_path(parent, meant));
+              throw InputError(parent,
+                               "",
+                               "the unknown subsection " + in_quotes(name),
+                               names.empty() ? "no subsection"
+                                             : list_words(names, "'") +
+                                                 suggestion(name, names));
+            }
           section = &(*section)[name];
-          parent  = join(parent, name);
+          parent  = join_path(parent, name);
         }
       return *section;
     }
@@ -172,18 +124,26 @@ namespace ACF
     void
     set_entry(ParameterHandler &prm,
               const Json &declared,
-              const std::string &section,
-              const std::string &entry,
-              const std::string &value)
+              const ParameterStatement &statement,
+              InputProblems &problems)
     {
-      const auto names = declared_names(declared, true);
-      if (std::find(names.begin(), names.end(), entry) == names.end())
-        throw InputError(section,
-                         entry,
-                         "an unknown entry",
-                         names.empty()
-                           ? "no entry"
-                           : list_words(names, "'") + suggestion(entry, names));
+      const std::string &section = statement.section;
+      const std::string &entry   = statement.entry;
+      const std::string &value   = statement.value;
+      if (!declared.is_object() || !declared.contains(entry) ||
+          !is_entry(declared[entry]))
+        {
+          const auto names        = declared_names(declared, true);
+          const std::string meant = nearest(entry, names);
+          if (!meant.empty())
+            problems.doubt(section, meant);
+          throw InputError(section,
+                           entry,
+                           "an unknown entry",
+                           names.empty() ? "no entry"
+                                         : list_words(names, "'") +
+                                             suggestion(entry, names));
+        }
 
       const std::string pattern = declared[entry]["pattern_description"];
       const InputError mismatch(section,
@@ -192,6 +152,12 @@ namespace ACF
                                 allowed_values(pattern));
       if (!strictly_matches(value, pattern))
         throw mismatch;
+      if (!is_moderate(value, pattern))
+        throw InputError(section,
+                         entry,
+                         in_quotes(value),
+                         allowed_values(pattern) +
+                           ", none larger than 1e100 in size");
 
       const InSection in_section(prm, section);
       try
@@ -217,168 +183,13 @@ namespace ACF
 
 
 
-  /** Mirrors the line syntax of ParameterHandler and collects all problems. */
-  class ParameterFile::Scanner
-  {
-  public:
-    void
-    scan(const std::string &text);
-
-    std::vector<Statement> statements;
-
-    /** By line, so that a later report of all is in the order of the file. */
-    std::multimap<unsigned int, InputError> problems;
-
-  private:
-    void
-    scan_statement(const std::string &text, const unsigned int line);
-
-    void
-    add_statement(const Statement &statement);
-
-    void
-    add_problem(const unsigned int line,
-                const std::string &entry,
-                const std::string &found,
-                const std::string &allowed);
-
-    /** Paths and lines. */
-    std::vector<Statement> open_sections = {{"", "", "", 0}};
-  };
-
-  void
-  ParameterFile::Scanner::add_problem(const unsigned int line,
-                                      const std::string &entry,
-                                      const std::string &found,
-                                      const std::string &allowed)
-  {
-    const std::string &section = open_sections.back().section;
-    problems.emplace(line, InputError(section, entry, found, allowed));
-  }
-
-  void
-  ParameterFile::Scanner::scan(const std::string &text)
-  {
-    std::istringstream stream(text);
-    std::string line, statement;
-    unsigned int first_line = 1;
-    bool continued          = false;
-    for (unsigned int line_n = 1; std::getline(stream, line); ++line_n)
-      {
-        line      = Utilities::trim(line);
-        continued = !line.empty() && line.back() == '\\';
-        if (continued)
-          line.pop_back();
-        statement += line;
-        if (continued && statement.find('#') != std::string::npos)
-          add_problem(line_n,
-                      "",
-                      "a comment that swallows the next line",
-                      "comments without '\\' at the end");
-        if (continued)
-          continue;
-        scan_statement(statement, first_line);
-        statement.clear();
-        first_line = line_n + 1;
-      }
-    if (continued)
-      scan_statement(statement, first_line);
-
-    for (; open_sections.size() > 1; open_sections.pop_back())
-      add_problem(open_sections.back().line,
-                  "",
-                  "no 'end' of the subsection opened here",
-                  "one 'end' for each subsection");
-  }
-
-  void
-  ParameterFile::Scanner::scan_statement(const std::string &text,
-                                         const unsigned int line)
-  {
-    std::string statement = text.substr(0, text.find('#'));
-    std::replace(statement.begin(), statement.end(), '\t', ' ');
-    statement = Utilities::trim(statement);
-    if (statement.empty())
-      return;
-
-    const std::string keyword = statement.substr(0, statement.find(' '));
-    const std::string rest = Utilities::trim(statement.substr(keyword.size()));
-    const std::size_t equals  = rest.find('=');
-    const std::string name    = Utilities::trim(rest.substr(0, equals));
-    const std::string section = open_sections.back().section;
-    const auto is             = [&](const char *lower, const char *upper) {
-      return keyword == lower || keyword == upper;
-    };
-    if (is("subsection", "SUBSECTION") && !rest.empty())
-      {
-        add_statement({join(section, rest), "", "", line});
-        if (rest.find('/') != std::string::npos)
-          add_problem(line, "", in_quotes(statement), "names without '/'");
-        open_sections.push_back(statements.back());
-      }
-    else if (is("set", "SET") && equals != std::string::npos && !name.empty())
-      add_statement(
-        {section, name, Utilities::trim(rest.substr(equals + 1)), line});
-    else if (is("end", "END") && rest.empty() && open_sections.size() > 1)
-      open_sections.pop_back();
-    else if (is("end", "END") && rest.empty())
-      add_problem(line,
-                  "",
-                  "'end' without an open subsection",
-                  "one 'end' for each subsection");
-    else if (is("include", "INCLUDE"))
-      add_problem(line,
-                  "",
-                  in_quotes(statement),
-                  "one file for a model, without 'include'");
-    else
-      add_problem(line,
-                  "",
-                  in_quotes(statement),
-                  "'set NAME = VALUE', 'subsection NAME', 'end', comments "
-                  "after '#'");
-  }
-
-  void
-  ParameterFile::Scanner::add_statement(const Statement &statement)
-  {
-    const auto first =
-      std::find_if(statements.begin(),
-                   statements.end(),
-                   [&statement](const Statement &other) {
-                     return other.section == statement.section &&
-                            other.entry == statement.entry;
-                   });
-    if (first != statements.end())
-      {
-        const std::string in_line = std::to_string(first->line);
-        if (statement.entry.empty())
-          add_problem(statement.line,
-                      "",
-                      "the subsection '" + statement.section +
-                        "' a second time (first in line " + in_line + ")",
-                      "each subsection once");
-        else
-          add_problem(statement.line,
-                      statement.entry,
-                      "the entry a second time (first in line " + in_line + ")",
-                      "each entry once");
-      }
-    if (!statement.value.empty() && statement.value.back() == '\\')
-      add_problem(statement.line,
-                  statement.entry,
-                  in_quotes(statement.value),
-                  "'\\' only as the last character of a continued line");
-    statements.push_back(statement);
-  }
-
-
-
   ParameterFile::ParameterFile(const std::filesystem::path &file,
                                const std::vector<std::string> &overrides)
     : file(file)
   {
-    read(read_file(file), overrides);
+    ParameterScanner scanner(text_problems);
+    scanner.scan_file(file);
+    read(scanner, overrides);
   }
 
   ParameterFile
@@ -388,38 +199,38 @@ namespace ACF
   {
     ParameterFile result;
     result.file = file;
-    result.read(text, overrides);
+    ParameterScanner scanner(result.text_problems);
+    scanner.scan_text(text, file);
+    result.read(scanner, overrides);
     return result;
   }
 
   void
-  ParameterFile::read(const std::string &text,
+  ParameterFile::read(ParameterScanner &scanner,
                       const std::vector<std::string> &overrides)
   {
-    const std::size_t non_text = find_non_text(text);
-    if (non_text != std::string::npos)
-      throw InputError(
-        "found bytes that are not text; allowed: a text file "
-        "in UTF-8")
-        .located(file.string(),
-                 1 + std::count(text.begin(), text.begin() + non_text, '\n'));
-
-    Scanner scanner;
-    const std::string_view byte_order_mark = "\xef\xbb\xbf";
-    scanner.scan(text.substr(
-      text.rfind(byte_order_mark, 0) == 0 ? byte_order_mark.size() : 0));
-    if (!scanner.problems.empty())
-      {
-        const auto &[line, problem] = *scanner.problems.begin();
-        throw problem.located(file.string(), line);
-      }
-    statements = scanner.statements;
+    // what follows would be about sections that nobody has meant
+    if (!scanner.is_complete())
+      text_problems.throw_all();
+    files = std::move(scanner.files);
+    for (const Statement &statement : scanner.statements)
+      add_statement(statement);
     if (statements.empty())
-      throw InputError("found a file without any entry; allowed: a model file")
-        .located(file.string(), 0);
-
+      {
+        text_problems.throw_all();
+        throw InputError(
+          "found a file without any entry; allowed: a model file")
+          .located(file.string(), 0);
+      }
     for (const std::string &override_text : overrides)
-      add_override(override_text);
+      try
+        {
+          add_override(override_text);
+        }
+      catch (const InputError &error)
+        {
+          text_problems.add(error, InputProblems::last_place);
+        }
   }
 
   void
@@ -435,13 +246,13 @@ namespace ACF
         std::find(names.begin(), names.end(), "") != names.end())
       fail(in_quotes(text));
 
-    Statement entry{"",
-                    names.back(),
-                    Utilities::trim(text.substr(equals + 1)),
-                    0};
+    Statement entry;
+    entry.entry = names.back();
+    entry.value = Utilities::trim(text.substr(equals + 1));
+    entry.place = InputProblems::last_place;
     names.pop_back();
     for (const std::string &name : names)
-      entry.section = join(entry.section, name);
+      entry.section = join_path(entry.section, name);
 
     // what no line of a file could set could not be echoed to one either
     const std::string &value = entry.value;
@@ -462,81 +273,176 @@ namespace ACF
                                  in_quotes(first->value) + ")",
                                "each entry once"),
                     entry);
-    statements.push_back(entry);
+    add_statement(entry);
+  }
+
+  void
+  ParameterFile::add_statement(const Statement &statement)
+  {
+    last_statements[statement.section + "\n" + statement.entry] =
+      statements.size();
+    statements.push_back(statement);
   }
 
   std::vector<std::string>
   ParameterFile::names(const std::string &section) const
   {
-    const Statement *const set = find(section, "Names");
-    std::vector<std::string> names;
-    if (set != nullptr && !set->value.empty())
-      names = split(set->value, ",");
+    InputProblems problems;
+    const std::vector<std::string> result = names(section, problems);
+    problems.throw_all();
+    return result;
+  }
 
-    for (auto name = names.begin(); name != names.end(); ++name)
+  std::vector<std::string>
+  ParameterFile::names(const std::string &section,
+                       InputProblems &problems) const
+  {
+    const Statement *const set = find(section, "Names");
+    std::vector<std::string> list;
+    if (set != nullptr && !set->value.empty())
+      list = split(set->value, ",");
+    if (list.size() > max_names)
+      {
+        problems.doubt(section);
+        problems.add(located(InputError(section,
+                                        "Names",
+                                        std::to_string(list.size()) + " names",
+                                        "at most " + std::to_string(max_names)),
+                             *set),
+                     set->place);
+        return {};
+      }
+
+    std::vector<std::string> result;
+    std::set<std::string> known;
+    for (const std::string &name : list)
       {
         const auto fail = [&](const std::string &found,
                               const std::string &allowed) {
-          throw located(InputError(section, "Names", found, allowed), *set);
+          problems.doubt(section, "Names");
+          problems.add(located(InputError(section, "Names", found, allowed),
+                               *set),
+                       set->place);
         };
-        if (name->empty())
+        if (name.empty())
           fail("an empty name in " + in_quotes(set->value),
                "names separated by ','");
-        if (!is_suitable_name(*name))
-          fail("the name " + in_quotes(*name),
+        else if (!is_suitable_name(name))
+          fail("the name " + in_quotes(name),
                "letters, digits, spaces, '_', '-' and '+', beginning with a "
                "letter or a digit");
-        if (*name == "Names")
+        else if (name == "Names")
           fail("the name 'Names'", "names other than that of the entry");
-        if (std::find(names.begin(), name, *name) != name)
-          fail("the name " + in_quotes(*name) + " twice", "each name once");
+        else if (!known.insert(name).second)
+          fail("the name " + in_quotes(name) + " twice", "each name once");
+        else
+          result.push_back(name);
       }
+    check_subsections(section, result, set, problems);
+    return result;
+  }
 
-    std::vector<std::string> subsections;
+  void
+  ParameterFile::check_subsections(const std::string &section,
+                                   const std::vector<std::string> &names,
+                                   const Statement *const set,
+                                   InputProblems &problems) const
+  {
+    const std::set<std::string> known(names.begin(), names.end());
+    // subsections without a name, or the other way round, may be a consequence
+    const bool names_are_wrong = problems.is_doubtful(section, "Names");
+    bool has_stray             = false;
+    std::set<std::string> subsections;
     for (const Statement &statement : statements)
       {
         const std::size_t slash = statement.section.rfind('/');
         if (slash == std::string::npos ||
-            statement.section.substr(0, slash) != section)
+            statement.section.compare(0, slash, section) != 0)
           continue;
-        subsections.push_back(statement.section.substr(slash + 1));
-        if (std::find(names.begin(), names.end(), subsections.back()) ==
-            names.end())
-          throw located(InputError("section " + in_quotes(section) +
-                                   " has a subsection " +
-                                   in_quotes(subsections.back()) +
-                                   " that is not in its Names (" +
-                                   list_words(names, "") + ")"),
-                        statement);
+        const std::string name = statement.section.substr(slash + 1);
+        if (!subsections.insert(name).second || known.count(name) > 0)
+          continue;
+        has_stray = true;
+        problems.doubt(statement.section);
+        problems.doubt(section, "Names");
+        if (!names_are_wrong)
+          problems.add(located(InputError("section " + in_quotes(section) +
+                                          " has a subsection " +
+                                          in_quotes(name) +
+                                          " that is not in its Names (" +
+                                          shorten(list_words(names, "")) + ")"),
+                               statement),
+                       statement.place);
       }
     for (const std::string &name : names)
-      if (std::find(subsections.begin(), subsections.end(), name) ==
-          subsections.end())
-        throw located(InputError("section " + in_quotes(section) +
-                                 " has no subsection for the name " +
-                                 in_quotes(name) + " in its Names"),
-                      *set);
-    return names;
+      if (subsections.count(name) == 0)
+        {
+          problems.doubt(join_path(section, name));
+          if (!names_are_wrong && !has_stray)
+            problems.add(located(InputError("section " + in_quotes(section) +
+                                            " has no subsection for the name " +
+                                            in_quotes(name) + " in its Names"),
+                                 *set),
+                         set->place);
+        }
   }
 
   void
   ParameterFile::parse(ParameterHandler &prm) const
   {
+    InputProblems problems = text_problems;
+    parse(prm, problems);
+    problems.throw_all();
+  }
+
+  void
+  ParameterFile::parse(ParameterHandler &prm, InputProblems &problems) const
+  {
     const Json tree = declarations(prm);
+    std::map<std::string, const Json *> sections;
     for (const Statement &statement : statements)
       try
         {
-          const Json &section = declared_section(tree, statement.section);
+          // wrong names have been reported
+          if (problems.is_doubtful(statement.section) ||
+              (statement.entry == "Names" &&
+               problems.is_doubtful(statement.section, "Names")))
+            continue;
+          const Json *&section = sections[statement.section];
+          if (section == nullptr)
+            section = &declared_section(tree, statement.section, problems);
           if (!statement.entry.empty())
-            set_entry(prm,
-                      section,
-                      statement.section,
-                      statement.entry,
-                      statement.value);
+            set_entry(prm, *section, statement, problems);
         }
       catch (const InputError &error)
         {
-          throw located(error, statement);
+          problems.add(located(error, statement), statement.place);
+          if (sections[statement.section] == nullptr)
+            problems.doubt(statement.section);
+          else
+            problems.doubt(statement.section, statement.entry);
+        }
+  }
+
+  const InputProblems &
+  ParameterFile::problems() const
+  {
+    return text_problems;
+  }
+
+  void
+  ParameterFile::check(const std::function<void()> &function,
+                       InputProblems &problems) const
+  {
+    InputProblems found;
+    found.attempt(function);
+    for (const InputError &error : found.errors())
+      if (!problems.is_doubtful(error.section, error.entry))
+        {
+          const Statement *const statement = find_place(error);
+          problems.add(locate(error),
+                       statement == nullptr ? InputProblems::last_place
+                                            : statement->place);
         }
   }
 
@@ -544,13 +450,14 @@ namespace ACF
   ParameterFile::locate(const InputError &error) const
   {
     const std::string message = error.what();
+    const auto is_located     = [&message](const std::string &name) {
+      return message.rfind(name + ":", 0) == 0;
+    };
     if ((error.section.empty() && error.entry.empty()) ||
-        message.rfind("command line: ", 0) == 0 ||
-        message.rfind(file.string() + ":", 0) == 0)
+        is_located("command line") ||
+        std::any_of(files.begin(), files.end(), is_located))
       return error;
-    if (const Statement *const statement = find(error.section, error.entry))
-      return located(error, *statement);
-    if (const Statement *const statement = find(error.section, ""))
+    if (const Statement *const statement = find_place(error))
       return located(error, *statement);
     return error.located(file.string(), 0);
   }
@@ -565,13 +472,16 @@ namespace ACF
   ParameterFile::find(const std::string &section,
                       const std::string &entry) const
   {
-    const auto statement = std::find_if(statements.rbegin(),
-                                        statements.rend(),
-                                        [&](const Statement &candidate) {
-                                          return candidate.section == section &&
-                                                 candidate.entry == entry;
-                                        });
-    return statement == statements.rend() ? nullptr : &*statement;
+    const auto statement = last_statements.find(section + "\n" + entry);
+    return statement == last_statements.end() ? nullptr
+                                              : &statements[statement->second];
+  }
+
+  const ParameterFile::Statement *
+  ParameterFile::find_place(const InputError &error) const
+  {
+    const Statement *const statement = find(error.section, error.entry);
+    return statement != nullptr ? statement : find(error.section, "");
   }
 
   InputError
@@ -579,10 +489,11 @@ namespace ACF
                          const Statement &statement) const
   {
     if (statement.line > 0)
-      return error.located(file.string(), statement.line);
+      return error.located(files[statement.file], statement.line);
     return error.located("command line: --set " +
-                           in_quotes(join(statement.section, statement.entry) +
-                                     "=" + statement.value),
+                           in_quotes(
+                             join_path(statement.section, statement.entry) +
+                             "=" + statement.value),
                          0);
   }
 

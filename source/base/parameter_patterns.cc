@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cctype>
 #include <charconv>
+#include <cmath>
 #include <numeric>
 #include <optional>
 #include <regex>
@@ -116,9 +117,23 @@ namespace ACF
   } // namespace
 
   std::string
+  shorten(const std::string &text)
+  {
+    // a shortened text within another one is not shortened again
+    constexpr std::size_t longest = 1000, shortened = 900;
+    if (text.size() <= longest)
+      return text;
+    std::size_t end = shortened;
+    while ((text[end] & 0xc0) == 0x80) // within a character of UTF-8
+      --end;
+    return text.substr(0, end) + "... (" + std::to_string(text.size()) +
+           " characters)";
+  }
+
+  std::string
   in_quotes(const std::string &text)
   {
-    return "'" + text + "'";
+    return "'" + shorten(text) + "'";
   }
 
   std::vector<std::string>
@@ -140,6 +155,29 @@ namespace ACF
     for (const std::string &word : words)
       list += (list.empty() ? "" : ", ") + mark + word + mark;
     return list;
+  }
+
+  bool
+  is_moderate(const std::string &value, const std::string &description)
+  {
+    if (const auto list = parse_list_pattern(description))
+      {
+        const auto elements = split(value, list->separator);
+        return std::all_of(elements.begin(),
+                           elements.end(),
+                           [&list](const std::string &element) {
+                             return is_moderate(element, list->element);
+                           });
+      }
+    if (description.rfind("[Double", 0) != 0)
+      return true;
+    double number     = 0;
+    const char *begin = value.data(), *end = begin + value.size();
+    if (begin != end && *begin == '+')
+      ++begin;
+    std::from_chars(begin, end, number);
+    // the pattern decides about what is not finite
+    return !std::isfinite(number) || std::abs(number) <= 1e100;
   }
 
   bool
@@ -217,11 +255,15 @@ namespace ACF
   }
 
   std::string
-  suggestion(const std::string &word,
-             const std::vector<std::string> &candidates)
+  nearest(const std::string &word, const std::vector<std::string> &candidates)
   {
-    std::string nearest;
+    // longer ones are no misspelt names, and take their time
+    constexpr std::size_t longest_word = 100;
+
+    std::string result;
     unsigned int smallest = numbers::invalid_unsigned_int;
+    if (word.size() > longest_word)
+      return result;
     for (const std::string &candidate : candidates)
       {
         // an abbreviation is as near as one wrong letter
@@ -234,9 +276,17 @@ namespace ACF
             5 * distance <= 2 * std::max(word.size(), candidate.size()))
           {
             smallest = distance;
-            nearest  = candidate;
+            result   = candidate;
           }
       }
-    return nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + "?)";
+    return result;
+  }
+
+  std::string
+  suggestion(const std::string &word,
+             const std::vector<std::string> &candidates)
+  {
+    const std::string meant = nearest(word, candidates);
+    return meant.empty() ? "" : " (did you mean " + in_quotes(meant) + "?)";
   }
 } // namespace ACF

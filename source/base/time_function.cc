@@ -3,6 +3,7 @@
 
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
+#include <acf/base/parameter_patterns.h>
 #include <acf/base/time_function.h>
 
 #include <deal.II/base/function_parser.h>
@@ -53,7 +54,8 @@ namespace ACF
         std::cerr.rdbuf(former);
       }
 
-      // " (reason)", from a line "Message:  <reason>".
+      // " (reason)", from a line "Message:  <reason>"; muParser names the
+      // position in most of them.
       std::string
       reason() const
       {
@@ -95,7 +97,7 @@ namespace ACF
         {
           throw InputError(section,
                            entry,
-                           "'" + expression + "'" + message.reason(),
+                           in_quotes(expression) + message.reason(),
                            allowed);
         }
       return parser;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/io/probe_types.h>
 
@@ -102,6 +103,13 @@ namespace ACF
         return {angle,
                 std::cos(wrapped) * arm[second] -
                   std::sin(wrapped) * arm[first]};
+      }
+
+      void
+      exchange(Archive &archive) override
+      {
+        archive("evaluations", n_evaluations);
+        archive("angle", angle);
       }
 
     private:

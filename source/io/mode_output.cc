@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/console.h>
-#include <acf/base/exceptions.h>
+#include <acf/base/files.h>
 #include <acf/io/mode_output.h>
 #include <acf/io/vtu_output.h>
 
@@ -10,9 +10,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <limits>
-#include <ostream>
+#include <sstream>
 
 namespace ACF
 {
@@ -21,7 +20,7 @@ namespace ACF
     void
     write_table(const NaturalModes &modes, const std::filesystem::path &file)
     {
-      std::ofstream stream(file);
+      std::ostringstream stream;
       stream.precision(std::numeric_limits<double>::max_digits10);
       stream << "number,eigenvalue [rad^2/s^2],angular frequency [rad/s],"
                 "frequency [Hz]\n";
@@ -29,10 +28,7 @@ namespace ACF
         stream << k + 1 << ',' << modes.modes[k].eigenvalue << ','
                << modes.modes[k].angular_frequency() << ','
                << modes.modes[k].frequency() << '\n';
-      stream.close();
-      if (!stream)
-        throw SimulationError("The file '" + file.string() +
-                              "' cannot be written.");
+      write_file(file, stream.str());
     }
 
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/exceptions.h>
+#include <acf/base/archive.h>
+#include <acf/base/input_problems.h>
 #include <acf/io/probe_types.h>
 
 #include <deal.II/base/parameter_handler.h>
+
+#include <zlib.h>
 
 #include <algorithm>
 #include <array>
@@ -98,6 +101,12 @@ namespace ACF
       evaluate(const SystemState &state) override
       {
         return select(probe->evaluate(state));
+      }
+
+      void
+      exchange(Archive &archive) override
+      {
+        probe->exchange(archive);
       }
 
     private:
@@ -205,20 +214,23 @@ namespace ACF
     const bool is_joint = (type == "reaction" || type.rfind("joint", 0) == 0);
     const bool has_subject = is_point || type.rfind("mean", 0) == 0 || is_joint;
 
+    InputProblems problems;
     const auto check_entry = [&](const std::string &entry,
                                  const bool given,
                                  const bool required,
                                  const bool possible) {
       if (required && !given)
-        throw InputError(section(),
-                         entry,
-                         "nothing",
-                         "a value, as the type '" + type + "' needs it");
+        problems.add(
+          InputError(section(),
+                     entry,
+                     "nothing",
+                     "a value, as the type '" + type + "' needs it"));
       if (!possible && given)
-        throw InputError(section(),
-                         entry,
-                         "a value",
-                         "nothing, as the type '" + type + "' does not use it");
+        problems.add(
+          InputError(section(),
+                     entry,
+                     "a value",
+                     "nothing, as the type '" + type + "' does not use it"));
     };
     check_entry("Of", !of.empty(), has_subject, has_subject);
     check_entry("From", !from.empty(), is_chord, is_chord);
@@ -233,10 +245,11 @@ namespace ACF
                 !is_chord && type != "energy" && type != "joint angle");
     check_entry("Axes", in_joint_axes, false, type == "reaction");
     if (!point.empty() && point.size() != dim)
-      throw InputError(section(),
-                       "Point",
-                       std::to_string(point.size()) + " numbers",
-                       "three numbers");
+      problems.add(InputError(section(),
+                              "Point",
+                              std::to_string(point.size()) + " numbers",
+                              "three numbers"));
+    problems.throw_all();
   }
 
 
@@ -253,6 +266,32 @@ namespace ACF
 
 
 
+  namespace
+  {
+    unsigned long
+    sum_of(const unsigned long start, const std::string &text)
+    {
+      return crc32_z(start,
+                     reinterpret_cast<const Bytef *>(text.data()),
+                     text.size());
+    }
+
+
+
+    struct KeptProbe
+    {
+      Probe &probe;
+
+      void
+      exchange(Archive &archive)
+      {
+        probe.exchange(archive);
+      }
+    };
+  } // namespace
+
+
+
   ProbeOutput::ProbeOutput(const MultibodySystem &system,
                            const std::vector<ProbeParameters> &parameters,
                            const double interval,
@@ -262,25 +301,23 @@ namespace ACF
     , file(directory / "probes.csv")
     , statistics(statistics)
   {
-    std::string header = "time [s]";
+    header = "time [s]";
     for (const ProbeParameters &probe : parameters)
       {
         probes.push_back(make_probe(probe, system));
         for (const std::string &column : probes.back()->columns())
           header += "," + probe.name + "." + column;
       }
-    stream.open(file);
-    write_line(header);
+    header += "\n";
   }
 
 
 
   void
-  ProbeOutput::write_line(const std::string &line)
+  ProbeOutput::append(const std::string &text)
   {
-    stream << line + "\n" << std::flush;
-    if (!stream)
-      throw SimulationError("Cannot write the file " + file.string() + ".");
+    log->append(text);
+    sum = sum_of(sum, text);
   }
 
 
@@ -310,7 +347,47 @@ namespace ACF
           line += ",";
           append(value);
         }
-    write_line(line);
+    if (!log)
+      {
+        log = std::make_unique<LogFile>(file, 0);
+        this->append(header);
+      }
+    this->append(line + "\n");
     ++statistics.probe_rows;
+  }
+
+
+
+  void
+  ProbeOutput::exchange(Archive &archive)
+  {
+    Observer::exchange(archive);
+    for (unsigned int k = 0; k < probes.size(); ++k)
+      {
+        KeptProbe kept{*probes[k]};
+        archive("probe " + std::to_string(k), kept);
+      }
+    std::uintmax_t n_bytes = log ? log->size() : 0;
+    if (log && !archive.is_loading())
+      log->synchronize();
+    archive("bytes", n_bytes);
+    archive("sum", sum);
+    if (!archive.is_loading())
+      return;
+    if (n_bytes == 0 || !std::filesystem::exists(file))
+      {
+        sum = 0;
+        return;
+      }
+    const std::string content = read_file(file).substr(0, n_bytes);
+    if (content.size() < n_bytes || sum_of(0, content) != sum)
+      throw InputError(
+        file.string() + ": found " +
+        (content.size() < n_bytes
+           ? "only " + std::to_string(content.size()) + " bytes"
+           : std::string("other values")) +
+        "; allowed: what was there when the checkpoint was written (" +
+        std::to_string(n_bytes) + " bytes), or another output directory");
+    log = std::make_unique<LogFile>(file, n_bytes);
   }
 } // namespace ACF

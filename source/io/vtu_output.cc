@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
+#include <acf/base/files.h>
 #include <acf/io/vtu_output.h>
 #include <acf/mechanics/reduced_strain.h>
 
@@ -16,13 +18,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <sstream>
-#include <system_error>
 
 namespace ACF
 {
@@ -245,32 +244,6 @@ namespace ACF
         stresses[a] /= n_cells[a];
       return stresses;
     }
-
-
-
-    // Nobody ever sees a part of a file under its name.
-    void
-    write_file(const std::filesystem::path &file, const std::string &content)
-    {
-      const std::filesystem::path temporary = file.string() + ".tmp";
-      std::error_code error;
-
-      errno = 0;
-      std::ofstream stream(temporary, std::ios::binary);
-      stream << content << std::flush;
-      stream.close();
-      if (!stream)
-        error.assign(errno != 0 ? errno : EIO, std::generic_category());
-      else
-        std::filesystem::rename(temporary, file, error);
-      if (!error)
-        return;
-
-      std::error_code ignored;
-      std::filesystem::remove(temporary, ignored);
-      throw SimulationError("The file '" + file.string() +
-                            "' cannot be written: " + error.message() + ".");
-    }
   } // namespace
 
 
@@ -356,9 +329,49 @@ namespace ACF
     write_file(directory / (name + ".vtu"), content);
 
     times_and_names.emplace_back(time, name + ".vtu");
+    try
+      {
+        write_list(list);
+      }
+    catch (const SimulationError &)
+      {
+        // so that the same state can be written again later
+        times_and_names.pop_back();
+        throw;
+      }
+  }
+
+
+
+  void
+  VtuWriter::write_list(const std::string &list) const
+  {
     std::ostringstream record;
     DataOutBase::write_pvd_record(record, times_and_names);
     write_file(directory / list, record.str());
+  }
+
+
+
+  void
+  VtuWriter::exchange(Archive &archive, const std::string &list)
+  {
+    std::vector<double> times;
+    std::vector<std::string> names;
+    for (const auto &[time, name] : times_and_names)
+      {
+        times.push_back(time);
+        names.push_back(name);
+      }
+    archive("times", times);
+    archive("names", names);
+    if (!archive.is_loading())
+      return;
+    times_and_names.clear();
+    for (unsigned int k = 0; k < times.size(); ++k)
+      if (std::filesystem::exists(directory / names.at(k)))
+        times_and_names.emplace_back(times[k], names[k]);
+    write_list(list);
   }
 
 
@@ -420,10 +433,21 @@ namespace ACF
         fields[2].values.push_back(std::move(*values));
         ++statistics.stress_evaluations;
       }
-    writer.write("solution-" + Utilities::int_to_string(n_files++, 6),
+    writer.write("solution-" + Utilities::int_to_string(n_files, 6),
                  fields,
                  state.time,
                  "solution.pvd");
+    ++n_files;
     ++statistics.vtu_files;
+  }
+
+
+
+  void
+  VtuOutput::exchange(Archive &archive)
+  {
+    Observer::exchange(archive);
+    archive("files", n_files);
+    writer.exchange(archive, "solution.pvd");
   }
 } // namespace ACF

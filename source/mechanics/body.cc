@@ -2,12 +2,13 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/console.h>
-#include <acf/base/exceptions.h>
+#include <acf/base/input_problems.h>
 #include <acf/mechanics/body.h>
 
 #include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace ACF
 {
@@ -96,23 +97,31 @@ namespace ACF
   void
   BodyParameters::check() const
   {
-    mesh.check(section());
+    InputProblems problems;
+    problems.attempt([&]() { mesh.check(section()); });
     const auto require_positive = [&](const std::string &entry,
                                       const double value) {
       if (!(value > 0))
-        throw InputError(section(),
-                         entry,
-                         value == 0 ? "nothing or zero"
-                                    : "'" + format_number(value) + "'",
-                         "a positive number");
+        problems.add(InputError(section(),
+                                entry,
+                                value == 0 ? "nothing or zero"
+                                           : "'" + format_number(value) + "'",
+                                "a positive number"));
     };
     require_positive("Young's modulus", material.youngs_modulus);
     require_positive("Density", material.density);
     if (!(material.poissons_ratio > -1 && material.poissons_ratio < 0.5))
-      throw InputError(section(),
-                       "Poisson's ratio",
-                       "'" + format_number(material.poissons_ratio) + "'",
-                       "a number larger than -1 and smaller than 0.5");
+      problems.add(
+        InputError(section(),
+                   "Poisson's ratio",
+                   "'" + format_number(material.poissons_ratio) + "'",
+                   "a number larger than -1 and smaller than 0.5"));
+    problems.attempt([&]() {
+      VectorField(displacement_field, section(), "Displacement field");
+    });
+    problems.attempt(
+      [&]() { VectorField(velocity_field, section(), "Velocity field"); });
+    problems.throw_all();
   }
 
 
@@ -132,7 +141,23 @@ namespace ACF
     , finite_elements(std::move(body_mesh))
     , constant_operators(
         assemble_body_operators(finite_elements, parameters.material))
-  {}
+  {
+    // so that areas, volumes and their products are numbers
+    const double length = constant_operators.length;
+    if (!(length > 1e-30 && length < 1e30))
+      throw InputError(parameters.section(),
+                       "Mesh",
+                       "a body with a length of " + format_number(length) +
+                         " m",
+                       "bodies between 1e-30 and 1e30 m");
+    const double body_mass = constant_operators.mass;
+    if (!std::isnormal(body_mass))
+      throw InputError(parameters.section(),
+                       "Density",
+                       "a body with a mass of " + format_number(body_mass) +
+                         " kg",
+                       "a density and a mesh that make a positive mass");
+  }
 
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/thread_order.h>
 #include <acf/mechanics/body_operators.h>
 
 #include <deal.II/base/memory_consumption.h>
@@ -81,7 +82,7 @@ namespace ACF
       {}
 
       CellValues(const CellValues &other)
-        : CellValues(other.body,
+        : CellValues((observe_order(&other), other.body),
                      other.values.get_quadrature(),
                      other.values.get_update_flags())
       {}
@@ -118,20 +119,32 @@ namespace ACF
     {
       CellMatrix<Entry> matrix;
       matrix.nodes.resize(body.scalar_element().dofs_per_cell);
+      const CellValues sample(body, quadrature, flags);
+      publish_order(&sample);
       WorkStream::run(
         body.dof_handler().begin_active(),
         body.dof_handler().end(),
         [&](const DoFHandler<dim>::active_cell_iterator &cell,
             CellValues &scratch,
             CellMatrix<Entry> &result) {
+          observe_order(&sample);
+          observe_order(&result);
           scratch.values.reinit(
             typename Triangulation<dim>::active_cell_iterator(cell));
           body.get_nodes(cell, result.nodes);
           integrate(scratch.values, result);
+          publish_order(&result);
         },
-        add,
-        CellValues(body, quadrature, flags),
+        [&](const CellMatrix<Entry> &result) {
+          observe_order(&result);
+          observe_order(&add);
+          add(result);
+          publish_order(&add);
+          publish_order(&result);
+        },
+        sample,
         matrix);
+      observe_order(&add);
     }
 
 

@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/console.h>
-#include <acf/base/exceptions.h>
+#include <acf/base/input_problems.h>
 #include <acf/mechanics/force_elements.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -66,37 +66,36 @@ namespace ACF
   void
   ForceElementParameters::check() const
   {
+    InputProblems problems;
     const bool is_bushing = (type == "bushing");
     const bool is_spring  = (type == "spring-damper");
     const auto count      = [&](const std::string &entry,
                            const std::vector<double> &numbers) {
       const unsigned int n = is_bushing ? 2 * dim : 1;
       if (!numbers.empty() && numbers.size() != n)
-        throw InputError(section(),
-                         entry,
-                         std::to_string(numbers.size()) + " numbers",
-                         std::to_string(n) +
-                           (n == 1 ? " number for" : " numbers for") +
-                           " the type '" + type + "'");
+        problems.add(InputError(section(),
+                                entry,
+                                std::to_string(numbers.size()) + " numbers",
+                                std::to_string(n) +
+                                  (n == 1 ? " number for" : " numbers for") +
+                                  " the type '" + type + "'"));
     };
     count("Stiffness", stiffness);
     count("Damping", damping);
     if (stiffness.empty() && damping.empty() && actuation.empty())
-      throw InputError(section(),
-                       "Stiffness",
-                       "nothing",
-                       "a Stiffness, a Damping or an Actuation");
+      problems.add(InputError(section(),
+                              "Stiffness",
+                              "nothing",
+                              "a Stiffness, a Damping or an Actuation"));
     if (type == "torsional spring" && !(axis.norm() > 0))
-      throw InputError(section(),
-                       "Axis",
-                       "nothing or the zero vector",
-                       "the axis of the torsional spring");
+      problems.add(InputError(section(),
+                              "Axis",
+                              "nothing or the zero vector",
+                              "the axis of the torsional spring"));
     const auto refuse = [&](const std::string &entry, const bool given) {
       if (given)
-        throw InputError(section(),
-                         entry,
-                         "a value",
-                         "nothing for the type '" + type + "'");
+        problems.add(InputError(
+          section(), entry, "a value", "nothing for the type '" + type + "'"));
     };
     refuse("Axis", is_spring && axis.norm() > 0);
     refuse("Free length", !is_spring && free_length >= 0);
@@ -104,10 +103,14 @@ namespace ACF
     refuse("Ground point", !is_spring && !ground_point.empty());
     refuse("Actuation", is_bushing && !actuation.empty());
     if (!ground_point.empty() && ground_point.size() != dim)
-      throw InputError(section(),
-                       "Ground point",
-                       std::to_string(ground_point.size()) + " numbers",
-                       "three numbers");
+      problems.add(InputError(section(),
+                              "Ground point",
+                              std::to_string(ground_point.size()) + " numbers",
+                              "three numbers"));
+    if (!actuation.empty())
+      problems.attempt(
+        [&]() { TimeFunction(actuation, section(), "Actuation"); });
+    problems.throw_all();
   }
 
 

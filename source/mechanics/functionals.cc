@@ -216,7 +216,7 @@ namespace ACF
                           geometry.centroid += dA * X;
                         });
     if (!(geometry.area > 0))
-      throw SimulationError("A surface has no area.");
+      throw SimulationError("a surface without area");
     geometry.centroid /= geometry.area;
 
     for_all_face_points(body,

@@ -6,56 +6,26 @@
 #include <gmsh.h>
 
 #include <algorithm>
-#include <unordered_map>
+#include <cstdlib>
 #include <utility>
 
 namespace ACF
 {
   namespace
   {
-    /** What gmsh knows of an element type. */
-    struct ElementType
-    {
-      std::string name;
-      int dimension;
-      int order;
-      int n_nodes;
-      int n_corners;
-      std::vector<double> node_coordinates;
-    };
-
-    ElementType
-    element_type(const int type)
-    {
-      ElementType result;
-      gmsh::model::mesh::getElementProperties(type,
-                                              result.name,
-                                              result.dimension,
-                                              result.order,
-                                              result.n_nodes,
-                                              result.node_coordinates,
-                                              result.n_corners);
-      return result;
-    }
-
-    /** Collects vertices and elements of gmsh's current model. */
+    /** Collects vertices and elements. */
     class ElementReader
     {
     public:
-      ElementReader(const double scale,
+      ElementReader(const GmshMesh &mesh,
+                    const double scale,
                     const MeshSource &source,
                     MeshData &data)
-        : source(source)
+        : mesh(mesh)
+        , scale(scale)
+        , source(source)
         , data(data)
-      {
-        std::vector<std::size_t> tags;
-        std::vector<double> coordinates, parameters;
-        gmsh::model::mesh::getNodes(tags, coordinates, parameters);
-        for (std::size_t i = 0; i < tags.size(); ++i)
-          nodes[tags[i]] = scale * Point<dim>(coordinates[3 * i],
-                                              coordinates[3 * i + 1],
-                                              coordinates[3 * i + 2]);
-      }
+      {}
 
       /** Append cells or faces with their ids. */
       template <int structdim>
@@ -67,7 +37,7 @@ namespace ACF
       {
         for (const ElementBlock &block : blocks)
           {
-            const ElementType type = element_type(block.type);
+            const ElementType type = gmsh_element_type(block.type);
             for (std::size_t e = 0; e < block.tags.size(); ++e)
               {
                 const std::size_t *const tags = &block.nodes[e * type.n_nodes];
@@ -96,16 +66,16 @@ namespace ACF
       }
 
     private:
-      const Point<dim> &
+      Point<dim>
       node(const std::size_t tag, const std::size_t element) const
       {
-        const auto found = nodes.find(tag);
-        if (found == nodes.end())
+        const auto found = mesh.nodes.find(tag);
+        if (found == mesh.nodes.end())
           throw source.error("element " + std::to_string(element) +
                                " with node " + std::to_string(tag) +
                                ", which does not exist",
                              "nodes that the file defines");
-        return found->second;
+        return scale * found->second;
       }
 
       unsigned int
@@ -143,7 +113,7 @@ namespace ACF
                     shape *= 0.5 * (1 + corner[d] * xi[d]);
                 straight += shape * Vector3(node(tags[c], element));
               }
-            const Point<dim> &position = node(tags[n], element);
+            const Point<dim> position = node(tags[n], element);
             if ((Vector3(position) - straight).norm() > tolerance * diameter)
               throw source.error(
                 "the curved element " + std::to_string(element) +
@@ -155,9 +125,10 @@ namespace ACF
           }
       }
 
+      const GmshMesh &mesh;
+      const double scale;
       const MeshSource &source;
       MeshData &data;
-      std::unordered_map<std::size_t, Point<dim>> nodes;
       std::unordered_map<std::size_t, unsigned int> vertices;
     };
   } // namespace
@@ -175,80 +146,129 @@ namespace ACF
     gmsh::finalize();
   }
 
-  EntityNames
-  physical_groups(const int dimension, const MeshSource &source)
+  ElementType
+  gmsh_element_type(const int type)
   {
-    const std::string kind = (dimension == dim ? "volume" : "surface");
-    EntityNames names;
-    gmsh::vectorpair groups;
-    gmsh::model::getPhysicalGroups(groups, dimension);
-    int largest_tag = 0;
-    for (const auto &group : groups)
-      {
-        const int tag = group.second;
-        std::string name;
-        std::vector<int> entities;
-        gmsh::model::getPhysicalName(dimension, tag, name);
-        gmsh::model::getEntitiesForPhysicalGroup(dimension, tag, entities);
-        if (name.empty())
-          name = kind + " " + std::to_string(tag);
-        EntityNames members;
-        for (const int entity : entities)
-          {
-            names[entity].insert(name);
-            members[entity] = {};
-          }
-        if (elements_of(dimension, members).empty())
-          throw source.error("the physical group '" + name + "' (" + kind +
-                               " " + std::to_string(tag) + ") without cells",
-                             "groups that are not empty");
-        largest_tag = std::max(largest_tag, tag);
-      }
+    ElementType result;
+    gmsh::model::mesh::getElementProperties(type,
+                                            result.name,
+                                            result.dimension,
+                                            result.order,
+                                            result.n_nodes,
+                                            result.node_coordinates,
+                                            result.n_corners);
+    // polygons, and elements of order zero
+    if (result.n_corners < 1 || result.n_nodes < result.n_corners)
+      throw "Elements of type " + std::to_string(type) + " (" + result.name +
+        ") have no fixed set of nodes";
+    return result;
+  }
 
-    // gmsh does not list groups that have a name only; tags are usually
-    // counted upwards, so that looking a little further finds them
-    constexpr int search_range = 100;
-    for (int tag = 1; tag <= largest_tag + search_range; ++tag)
-      if (std::find(groups.begin(),
-                    groups.end(),
-                    std::make_pair(dimension, tag)) == groups.end())
+  GmshMesh
+  gmsh_mesh()
+  {
+    GmshMesh mesh;
+    std::vector<std::size_t> node_tags;
+    std::vector<double> coordinates, parameters;
+    gmsh::model::mesh::getNodes(node_tags, coordinates, parameters);
+    for (std::size_t i = 0; i < node_tags.size(); ++i)
+      mesh.nodes[node_tags[i]] = Point<dim>(coordinates[3 * i],
+                                            coordinates[3 * i + 1],
+                                            coordinates[3 * i + 2]);
+
+    for (unsigned int d = dim - 1; d <= dim; ++d)
+      {
+        GmshMesh::Entities &entities = mesh.entities[d];
+        gmsh::vectorpair pairs;
+        gmsh::model::getEntities(pairs, d);
+        for (const auto &[unused, entity] : pairs)
+          {
+            std::vector<int> types, groups;
+            std::vector<std::vector<std::size_t>> tags, nodes;
+            gmsh::model::getPhysicalGroupsForEntity(d, entity, groups);
+            for (const int group : groups)
+              entities.groups[entity].insert(std::abs(group));
+            entities.groups.try_emplace(entity);
+            gmsh::model::mesh::getElements(types, tags, nodes, d, entity);
+            for (std::size_t i = 0; i < types.size(); ++i)
+              entities.elements[{entity, types[i]}] = {entity,
+                                                       types[i],
+                                                       std::move(tags[i]),
+                                                       std::move(nodes[i])};
+          }
+
+        gmsh::model::getPhysicalGroups(pairs, d);
+        int largest_tag = 0;
+        for (const auto &[unused, tag] : pairs)
+          largest_tag = std::max(largest_tag, tag);
+        // gmsh does not list groups that have a name only; tags are usually
+        // counted upwards, so that looking a little further finds them
+        constexpr int search_range = 100;
+        std::string name;
+        for (int tag = 1; tag <= largest_tag + search_range; ++tag)
+          {
+            gmsh::model::getPhysicalName(d, tag, name);
+            if (!name.empty())
+              entities.group_names[tag] = name;
+          }
+      }
+    return mesh;
+  }
+
+  EntityNames
+  physical_groups(const GmshMesh &mesh,
+                  const int dimension,
+                  const MeshSource &source)
+  {
+    const GmshMesh::Entities &all = mesh.entities[dimension];
+    const std::string kind        = (dimension == dim ? "volume" : "surface");
+    std::map<int, bool> has_elements; // by the tag of the group
+    for (const auto &group : all.group_names)
+      has_elements[group.first] = false;
+    EntityNames names;
+    for (const auto &[entity, groups] : all.groups)
+      for (const int tag : groups)
         {
-          std::string name;
-          gmsh::model::getPhysicalName(dimension, tag, name);
-          if (!name.empty())
-            throw source.error("the physical group '" + name + "' (" + kind +
-                                 " " + std::to_string(tag) + ") without cells",
-                               "groups that are not empty");
+          const auto name = all.group_names.find(tag);
+          names[entity].insert(name == all.group_names.end()
+                                 ? kind + " " + std::to_string(tag)
+                                 : name->second);
+          const auto block = all.elements.lower_bound({entity, 0});
+          has_elements[tag] |=
+            block != all.elements.end() && block->first.first == entity;
+        }
+    for (const auto &[tag, is_full] : has_elements)
+      if (!is_full)
+        {
+          const auto name = all.group_names.find(tag);
+          throw source.error(
+            "the physical group " +
+              (name == all.group_names.end() ? "" : "'" + name->second + "' ") +
+              "(" + kind + " " + std::to_string(tag) + ") without cells",
+            "groups that are not empty");
         }
     return names;
   }
 
   EntityNames
-  geometric_entities(const int dimension)
+  geometric_entities(const GmshMesh &mesh, const int dimension)
   {
     EntityNames names;
-    gmsh::vectorpair entities;
-    gmsh::model::getEntities(entities, dimension);
-    for (const auto &entity : entities)
-      names[entity.second] = {(dimension == dim ? "volume " : "surface ") +
-                              std::to_string(entity.second)};
+    for (const auto &entity : mesh.entities[dimension].groups)
+      names[entity.first] = {(dimension == dim ? "volume " : "surface ") +
+                             std::to_string(entity.first)};
     return names;
   }
 
   std::vector<ElementBlock>
-  elements_of(const int dimension, const EntityNames &names)
+  elements_of(const GmshMesh &mesh,
+              const int dimension,
+              const EntityNames &names)
   {
     std::vector<ElementBlock> result;
-    for (const auto &entity : names)
-      {
-        std::vector<int> types;
-        std::vector<std::vector<std::size_t>> tags, nodes;
-        gmsh::model::mesh::getElements(
-          types, tags, nodes, dimension, entity.first);
-        for (std::size_t i = 0; i < types.size(); ++i)
-          result.push_back(
-            {entity.first, types[i], std::move(tags[i]), std::move(nodes[i])});
-      }
+    for (const auto &[place, block] : mesh.entities[dimension].elements)
+      if (names.count(place.first) > 0)
+        result.push_back(block);
     return result;
   }
 
@@ -262,7 +282,7 @@ namespace ACF
       {"Pyramid", "pyramids"},
       {"Triangle", "triangles"},
       {"Quadrilateral", "quadrilaterals"}};
-    const std::string name = element_type(type).name;
+    const std::string name = gmsh_element_type(type).name;
     const auto plural      = plurals.find(name.substr(0, name.find(' ')));
     return plural != plurals.end() ? plural->second : name + " elements";
   }
@@ -319,7 +339,8 @@ namespace ACF
   }
 
   void
-  read_elements(const std::vector<ElementBlock> &cells,
+  read_elements(const GmshMesh &mesh,
+                const std::vector<ElementBlock> &cells,
                 const std::map<int, unsigned int> &cell_ids,
                 const std::vector<ElementBlock> &faces,
                 const std::map<int, unsigned int> &face_ids,
@@ -327,7 +348,7 @@ namespace ACF
                 const MeshSource &source,
                 MeshData &data)
   {
-    ElementReader reader(scale, source, data);
+    ElementReader reader(mesh, scale, source, data);
     reader.read(cells, cell_ids, data.cells, &data.cell_numbers);
     reader.read(faces, face_ids, data.faces, nullptr);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/exceptions.h>
+#include <acf/base/input_problems.h>
 #include <acf/mechanics/joints.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -207,83 +207,158 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // An entry that the type of the joint does not use.
+    InputError
+    unused(const JointParameters &parameters,
+           const std::string &entry,
+           const std::string &found,
+           const std::string &reason)
+    {
+      return InputError(parameters.section(),
+                        entry,
+                        found,
+                        "nothing for the type '" + parameters.type + "'; " +
+                          reason);
+    }
+
+
+
+    void
+    check_axes(const JointParameters &p)
+    {
+      InputProblems problems;
+      const JointType &kind = joint_types.at(p.type);
+      if (!uses_directions(p.type) && !p.directions.empty())
+        problems.add(
+          unused(p,
+                 "Directions",
+                 "'" + p.directions + "'",
+                 "directions belong to 'mean position' and 'mean rotation'"));
+      if (kind.has_axis && !(p.axis.norm() > 0))
+        problems.add(
+          InputError(p.section(),
+                     "Axis",
+                     "nothing or the zero vector",
+                     "the direction of the axis of the " + p.type + " joint"));
+      if (!kind.has_axis && p.axis.norm() > 0)
+        problems.add(
+          unused(p,
+                 "Axis",
+                 "a vector",
+                 "an axis belongs to 'revolute', 'cylindrical', 'prismatic', "
+                 "'universal', 'planar' and points on lines and planes"));
+      if (!kind.has_axis && p.cross_axis.norm() > 0)
+        problems.add(unused(
+          p, "Cross axis", "a vector", "it belongs to types with an axis"));
+      if (p.type == "universal" && !(p.cross_axis.norm() > 0))
+        problems.add(InputError(p.section(),
+                                "Cross axis",
+                                "nothing or the zero vector",
+                                "the second axis of the universal joint"));
+      if (p.axis.norm() > 0 && p.cross_axis.norm() > 0)
+        {
+          const double cosine = std::abs(p.axis * p.cross_axis) /
+                                p.axis.norm() / p.cross_axis.norm();
+          if (!(cosine <= (p.type == "universal" ? 1e-8 : 1 - 1e-8)))
+            problems.add(InputError(p.section(),
+                                    "Cross axis",
+                                    "a vector that is not across the axis",
+                                    "a vector perpendicular to the axis"));
+        }
+      if ((uses_directions(p.type) || p.type == "distance") && !p.free.empty())
+        problems.add(
+          unused(p, "Free", "'" + p.free + "'", "choose its Directions"));
+      problems.throw_all();
+    }
+
+
+
+    // The expressions by themselves.
+    void
+    check_functions(const JointParameters &p, InputProblems &problems)
+    {
+      const auto check = [&](const std::string &entry,
+                             const std::string &text,
+                             const bool is_vector) {
+        if (!text.empty())
+          problems.attempt([&]() {
+            if (is_vector)
+              parse_time_vector(text, p.section(), entry);
+            else
+              TimeFunction(text, p.section(), entry);
+          });
+      };
+      check("Angle", p.angle, false);
+      check("Angular velocity", p.angular_velocity, false);
+      check("Displacement",
+            p.displacement,
+            p.displacement.find(';') != std::string::npos);
+      check("Position", p.position, true);
+      check("Length", p.length, false);
+    }
+
+
+
+    void
+    check_drives(const JointParameters &p)
+    {
+      const JointType &kind    = joint_types.at(p.type);
+      std::string translations = kind.translations, rotations = kind.rotations;
+      read_free(p, translations, rotations);
+      InputProblems problems;
+      const bool turns = (rotations == "xy");
+      if (!p.angle.empty() && !p.angular_velocity.empty())
+        problems.add(InputError(p.section(),
+                                "Angular velocity",
+                                "'" + p.angular_velocity + "' beside an Angle",
+                                "one of the two"));
+      if ((!p.angle.empty() || !p.angular_velocity.empty()) &&
+          (!turns || !kind.has_axis))
+        problems.add(unused(p,
+                            p.angle.empty() ? "Angular velocity" : "Angle",
+                            "a prescribed rotation",
+                            "it needs an axis about which the joint is free"));
+      if (!p.displacement.empty() && !p.drives_the_ground() &&
+          (!kind.has_axis || translations != "xy"))
+        problems.add(
+          unused(p,
+                 "Displacement",
+                 "'" + p.displacement + "'",
+                 "one function needs an axis along which the joint is free, "
+                 "three functions move a blocked position"));
+      if (p.drives_the_ground() && translations.empty() &&
+          p.type != "mean position")
+        problems.add(unused(p,
+                            p.position.empty() ? "Displacement" : "Position",
+                            "a prescribed motion",
+                            "it needs a blocked position"));
+      if (!p.position.empty() && !p.displacement.empty())
+        problems.add(InputError(p.section(),
+                                "Position",
+                                "'" + p.position + "' beside a Displacement",
+                                "one of the two"));
+      if (!p.length.empty() && p.type != "distance")
+        problems.add(unused(
+          p, "Length", "'" + p.length + "'", "it belongs to 'distance'"));
+      // functions that do not belong here are no further problem
+      if (problems.empty())
+        check_functions(p, problems);
+      problems.throw_all();
+    }
+  } // namespace
+
+
+
   void
   JointParameters::check() const
   {
-    const JointType &kind = joint_types.at(type);
-    const auto refuse     = [&](const std::string &entry,
-                            const std::string &found,
-                            const std::string &reason) {
-      throw InputError(section(),
-                       entry,
-                       found,
-                       "nothing for the type '" + type + "'; " + reason);
-    };
-    if (!uses_directions(type) && !directions.empty())
-      refuse("Directions",
-             "'" + directions + "'",
-             "directions belong to 'mean position' and 'mean rotation'");
-    if (kind.has_axis && !(axis.norm() > 0))
-      throw InputError(section(),
-                       "Axis",
-                       "nothing or the zero vector",
-                       "the direction of the axis of the " + type + " joint");
-    if (!kind.has_axis && axis.norm() > 0)
-      refuse("Axis",
-             "a vector",
-             "an axis belongs to 'revolute', 'cylindrical', 'prismatic', "
-             "'universal', 'planar' and points on lines and planes");
-    if (!kind.has_axis && cross_axis.norm() > 0)
-      refuse("Cross axis", "a vector", "it belongs to types with an axis");
-    if (type == "universal" && !(cross_axis.norm() > 0))
-      throw InputError(section(),
-                       "Cross axis",
-                       "nothing or the zero vector",
-                       "the second axis of the universal joint");
-    if (cross_axis.norm() > 0)
-      {
-        const double cosine =
-          std::abs(axis * cross_axis) / axis.norm() / cross_axis.norm();
-        if (cosine > (type == "universal" ? 1e-8 : 1 - 1e-8))
-          throw InputError(section(),
-                           "Cross axis",
-                           "a vector that is not across the axis",
-                           "a vector perpendicular to the axis");
-      }
-    if ((uses_directions(type) || type == "distance") && !free.empty())
-      refuse("Free", "'" + free + "'", "choose its Directions");
-
-    std::string translations = kind.translations, rotations = kind.rotations;
-    read_free(*this, translations, rotations);
-    const bool turns = (rotations == "xy");
-    if (!angle.empty() && !angular_velocity.empty())
-      throw InputError(section(),
-                       "Angular velocity",
-                       "'" + angular_velocity + "' beside an Angle",
-                       "one of the two");
-    if ((!angle.empty() || !angular_velocity.empty()) &&
-        (!turns || !kind.has_axis))
-      refuse(angle.empty() ? "Angular velocity" : "Angle",
-             "a prescribed rotation",
-             "it needs an axis about which the joint is free");
-    if (!displacement.empty() && !drives_the_ground() &&
-        (!kind.has_axis || translations != "xy"))
-      refuse("Displacement",
-             "'" + displacement + "'",
-             "one function needs an axis along which the joint is free, three "
-             "functions move a blocked position");
-    if (drives_the_ground() && translations.empty() && type != "mean position")
-      refuse(position.empty() ? "Displacement" : "Position",
-             "a prescribed motion",
-             "it needs a blocked position");
-    if (!position.empty() && !displacement.empty())
-      throw InputError(section(),
-                       "Position",
-                       "'" + position + "' beside a Displacement",
-                       "one of the two");
-    if (!length.empty() && type != "distance")
-      refuse("Length", "'" + length + "'", "it belongs to 'distance'");
-    direction_vectors();
+    InputProblems problems;
+    problems.attempt([&]() { check_axes(*this); });
+    problems.attempt([&]() { check_drives(*this); });
+    problems.attempt([&]() { direction_vectors(); });
+    problems.throw_all();
   }
 
 

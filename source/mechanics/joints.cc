@@ -117,9 +117,8 @@ namespace ACF
 
 
 
-  std::array<JointSide, 2>
-  parse_sides(const std::string &text,
-              const std::vector<Body> &bodies,
+  std::array<std::string, 2>
+  split_sides(const std::string &text,
               const std::string &section,
               const std::string &entry)
   {
@@ -131,6 +130,18 @@ namespace ACF
                        text.empty() ? "nothing" : "'" + text + "'",
                        "two surfaces, 'BODY: SURFACE, BODY: SURFACE', or a "
                        "surface and the ground, 'BODY: SURFACE, ground'");
+    return {{names[0], names[1]}};
+  }
+
+
+
+  std::array<JointSide, 2>
+  parse_sides(const std::string &text,
+              const std::vector<Body> &bodies,
+              const std::string &section,
+              const std::string &entry)
+  {
+    const auto names = split_sides(text, section, entry);
     return {{JointSide(names[0], bodies, section, entry),
              JointSide(names[1], bodies, section, entry)}};
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/exceptions.h>
+#include <acf/base/input_problems.h>
 #include <acf/mechanics/loads.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -61,15 +61,19 @@ namespace ACF
   void
   SurfaceLoadParameters::check() const
   {
+    InputProblems problems;
     if (type == "pressure" && follows)
-      throw InputError(section(),
-                       "Direction",
-                       "'follows the body'",
-                       "nothing for a pressure, which always does");
-    if (type == "pressure")
-      TimeFunction(value, section(), "Value");
-    else
-      parse_time_vector(value, section(), "Value");
+      problems.add(InputError(section(),
+                              "Direction",
+                              "'follows the body'",
+                              "nothing for a pressure, which always does"));
+    problems.attempt([&]() {
+      if (type == "pressure")
+        TimeFunction(value, section(), "Value");
+      else
+        parse_time_vector(value, section(), "Value");
+    });
+    problems.throw_all();
   }
 
 

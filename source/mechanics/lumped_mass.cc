@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/exceptions.h>
+#include <acf/base/input_problems.h>
 #include <acf/mechanics/lumped_mass.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -36,16 +36,16 @@ namespace ACF
   void
   LumpedMassParameters::check() const
   {
+    InputProblems problems;
     if (!inertia.empty() && inertia.size() != 2 * dim)
-      throw InputError(section(),
-                       "Inertia",
-                       std::to_string(inertia.size()) + " numbers",
-                       "six numbers: xx, yy, zz, yz, zx, xy");
+      problems.add(InputError(section(),
+                              "Inertia",
+                              std::to_string(inertia.size()) + " numbers",
+                              "six numbers: xx, yy, zz, yz, zx, xy"));
     if (mass == 0 && inertia.empty())
-      throw InputError(section(),
-                       "Mass",
-                       "nothing or zero",
-                       "a positive Mass or an Inertia");
+      problems.add(InputError(
+        section(), "Mass", "nothing or zero", "a positive Mass or an Inertia"));
+    problems.throw_all();
   }
 
 

@@ -2,13 +2,11 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/mechanics/mesh.h>
-#include <acf/mechanics/mesh_division.h>
 #include <acf/mechanics/mesh_generation.h>
 #include <acf/mechanics/mesh_import.h>
+#include <acf/mechanics/mesh_limits.h>
 
-#include <deal.II/base/patterns.h>
 #include <deal.II/base/quadrature_lib.h>
-#include <deal.II/base/utilities.h>
 
 #include <deal.II/fe/fe_simplex_p.h>
 #include <deal.II/fe/mapping_fe.h>
@@ -16,25 +14,12 @@
 #include <deal.II/grid/grid_tools.h>
 
 #include <algorithm>
-#include <sstream>
-#include <tuple>
 #include <utility>
 
 namespace ACF
 {
   namespace
   {
-    /** "1, 2, 3" */
-    template <typename Number>
-    std::string
-    describe_list(const std::vector<Number> &list)
-    {
-      std::ostringstream text;
-      for (std::size_t i = 0; i < list.size(); ++i)
-        text << (i > 0 ? ", " : "") << list[i];
-      return text.str();
-    }
-
     Point<dim>
     to_point(const std::vector<double> &coordinates)
     {
@@ -46,30 +31,6 @@ namespace ACF
     {
       return element == "tetrahedron" ? ReferenceCells::Tetrahedron
                                       : ReferenceCells::Hexahedron;
-    }
-
-    /** An entry that one kind of mesh uses, and that it must have then. */
-    template <typename Number>
-    void
-    check_list(const std::vector<Number> &value,
-               const std::size_t n_numbers,
-               const bool is_used,
-               const std::string &meaning,
-               const std::string &mesh,
-               const std::string &section,
-               const std::string &entry)
-    {
-      if (is_used && value.size() != n_numbers)
-        throw InputError(section,
-                         entry,
-                         value.empty() ? "no value"
-                                       : "'" + describe_list(value) + "'",
-                         meaning + " for Mesh = " + mesh);
-      if (!is_used && !value.empty())
-        throw InputError(section,
-                         entry,
-                         "'" + describe_list(value) + "'",
-                         "no value for Mesh = " + mesh);
     }
 
     /** Names and ids to look up, in an error if in vain. */
@@ -113,172 +74,6 @@ namespace ACF
                                                  !is_even);
     }
   } // namespace
-
-  void
-  MeshParameters::add_parameters(ParameterHandler &prm)
-  {
-    const Patterns::List point(Patterns::Double(), 0, 3);
-    prm.add_parameter(
-      "Mesh",
-      mesh,
-      "Mesh file of gmsh (.msh, in m), geometry that gmsh meshes (.geo and "
-      ".brep in m; .step, .stp, .igs, .iges in their own unit), 'box' or "
-      "'cylinder'; file names are relative to the folder of this file. "
-      "Units: none.");
-    prm.add_parameter("Element",
-                      element,
-                      "Shape of the cells; files must contain it, the built-in "
-                      "shapes are made of either. Units: none.",
-                      Patterns::Selection("tetrahedron|hexahedron"));
-    prm.add_parameter(
-      "Mesh size",
-      mesh_size,
-      "Largest element size when gmsh meshes a geometry, where the geometry "
-      "does not prescribe counts of cells; 0: what the file says, or gmsh's "
-      "default, a tenth of the diagonal of the bounding box, which is also "
-      "its limit. Units: m.",
-      Patterns::Double(0));
-    prm.add_parameter(
-      "Box from",
-      box_from,
-      "Corner of the box with the smallest coordinates. Units: m.",
-      point);
-    prm.add_parameter("Box to",
-                      box_to,
-                      "Corner of the box with the largest coordinates. "
-                      "Units: m.",
-                      point);
-    prm.add_parameter("Cylinder from",
-                      cylinder_from,
-                      "Centre of the face 'start' of the cylinder. Units: m.",
-                      point);
-    prm.add_parameter("Cylinder to",
-                      cylinder_to,
-                      "Centre of the face 'end' of the cylinder. Units: m.",
-                      point);
-    prm.add_parameter("Cylinder radius",
-                      cylinder_radius,
-                      "Radius of the cylinder. Units: m.",
-                      Patterns::Double(0));
-    prm.add_parameter(
-      "Cells",
-      cells,
-      "Counts of hexahedra in a built-in shape, each of which is split into "
-      "24 if the element is the tetrahedron; box: along x, y and z; cylinder: "
-      "across the diameter (at least 3) and along the axis. Units: none.",
-      Patterns::List(Patterns::Integer(1), 0, 3));
-    prm.add_parameter(
-      "Mirror",
-      mirror,
-      "Normal of a plane through the origin at which the mesh, then of half a "
-      "body, is mirrored; the images of surfaces are called 'NAME mirrored', "
-      "a surface with its image 'NAME both'. "
-      "Units: none.",
-      Patterns::Selection("none|x|y|z"));
-    prm.add_parameter(
-      "Cut",
-      cut,
-      "Where the body is divided into parts with rotations of their own: at "
-      "planes across an axis of the mesh, 'y: 0.25, 0.5'; into slices of equal "
-      "thickness, '4 along y'; or into the 'volumes' of the mesh file. Parts "
-      "are called 'NAME 1', 'NAME 2', ... or 'NAME VOLUME'. Units: m.");
-  }
-
-  bool
-  MeshParameters::operator==(const MeshParameters &other) const
-  {
-    const auto all = [](const MeshParameters &p) {
-      return std::tie(p.mesh,
-                      p.element,
-                      p.mesh_size,
-                      p.box_from,
-                      p.box_to,
-                      p.cylinder_from,
-                      p.cylinder_to,
-                      p.cylinder_radius,
-                      p.cells,
-                      p.mirror,
-                      p.cut,
-                      p.part);
-    };
-    return all(*this) == all(other);
-  }
-
-
-
-  void
-  MeshParameters::check(const std::string &section) const
-  {
-    const bool is_box      = (mesh == "box");
-    const bool is_cylinder = (mesh == "cylinder");
-    const bool is_built_in = (is_box || is_cylinder);
-    const auto kind        = mesh_file_kind(mesh);
-    if (!is_built_in && kind == MeshFileKind::unknown)
-      throw InputError(section,
-                       "Mesh",
-                       mesh.empty() ? "no value" : "'" + mesh + "'",
-                       "box, cylinder, or a file .msh, .geo, .step, .stp, "
-                       ".igs, .iges or .brep");
-    if (mesh_size > 0 && (is_built_in || kind == MeshFileKind::mesh))
-      throw InputError(section,
-                       "Mesh size",
-                       Utilities::to_string(mesh_size),
-                       "no value for Mesh = " + mesh +
-                         ", only geometries are meshed by gmsh");
-
-    const std::string point = "a point of three coordinates";
-    check_list(box_from, 3, is_box, point, mesh, section, "Box from");
-    check_list(box_to, 3, is_box, point, mesh, section, "Box to");
-    check_list(
-      cylinder_from, 3, is_cylinder, point, mesh, section, "Cylinder from");
-    check_list(
-      cylinder_to, 3, is_cylinder, point, mesh, section, "Cylinder to");
-    check_list(cells,
-               is_box ? 3 : 2,
-               is_built_in,
-               is_box ? "three positive counts" : "two positive counts",
-               mesh,
-               section,
-               "Cells");
-    if (is_cylinder != (cylinder_radius > 0))
-      throw InputError(section,
-                       "Cylinder radius",
-                       Utilities::to_string(cylinder_radius),
-                       (is_cylinder ? "a positive number for Mesh = "
-                                    : "no value for Mesh = ") +
-                         mesh);
-    parse_cut(cut, section);
-    if (is_box)
-      for (unsigned int d = 0; d < dim; ++d)
-        if (!(box_from[d] < box_to[d]))
-          throw InputError(section,
-                           "Box to",
-                           "'" + describe_list(box_to) + "'",
-                           "coordinates larger than those of 'Box from', '" +
-                             describe_list(box_from) + "'");
-    if (is_cylinder && cylinder_from == cylinder_to)
-      throw InputError(section,
-                       "Cylinder to",
-                       "'" + describe_list(cylinder_to) + "'",
-                       "a point other than 'Cylinder from'");
-
-    if (!is_built_in)
-      return;
-    constexpr double largest_number = 1e8;
-    double n_cells                  = (element == "tetrahedron" ? 24 : 1);
-    for (const unsigned int count : cells)
-      n_cells *= count;
-    if (is_cylinder)
-      n_cells *= cells[0];
-    if (std::find(cells.begin(), cells.end(), 0U) != cells.end() ||
-        (is_cylinder && cells[0] < 3) || n_cells > largest_number)
-      throw InputError(section,
-                       "Cells",
-                       "'" + describe_list(cells) + "'",
-                       std::string(is_box ? "three positive counts"
-                                          : "two counts, at least 3 and 1") +
-                         " that make no more than 100 million cells");
-  }
 
   BodyMesh::BodyMesh(MeshData data, const MeshSource &source)
     : cell_type(data.reference_cell)
@@ -406,10 +201,17 @@ namespace ACF
                                cells[1],
                                reference_cell);
     else
-      data = import_mesh(directory / parameters.mesh,
-                         reference_cell,
-                         parameters.mesh_size,
-                         source);
+      {
+        data = import_mesh(directory / parameters.mesh,
+                           reference_cell,
+                           parameters.mesh_size,
+                           source);
+        check_number_of_cells(data.cells.size(),
+                              reference_cell == ReferenceCells::Tetrahedron,
+                              section,
+                              "Mesh",
+                              "'" + parameters.mesh + "'");
+      }
     if (parameters.mirror != "none")
       {
         // before, to count what is wrong once only

@@ -17,7 +17,7 @@ namespace ACF
   {
     const char *const cut_form =
       "nothing, planes across an axis of the mesh ('y: 0.25, 0.5', ascending), "
-      "a number of slices of equal thickness ('4 along y', at least 2), or "
+      "a number of slices of equal thickness ('4 along y', 2 to 10000), or "
       "'volumes'";
 
     InputError
@@ -65,6 +65,13 @@ namespace ACF
                 const MeshCut &cut,
                 const MeshSource &source)
     {
+      // some would be empty: said below, but here before it takes memory
+      if (cut.n_slices > mesh.cells.size() + 1000)
+        throw cut_error(source,
+                        std::to_string(cut.n_slices) +
+                          " slices of a mesh with " +
+                          std::to_string(mesh.cells.size()) + " cells",
+                        "not more slices than cells");
       double first = std::numeric_limits<double>::max(), last = -first;
       for (const CellData<dim> &cell : mesh.cells)
         for (const unsigned int vertex : cell.vertices)
@@ -309,7 +316,7 @@ namespace ACF
             cut.kind = MeshCut::Kind::slices;
             axis     = Utilities::trim(text.substr(middle + along.size()));
             const int number = Utilities::string_to_int(text.substr(0, middle));
-            cut.n_slices     = number > 1 ? number : 0;
+            cut.n_slices     = number > 1 && number <= 10000 ? number : 0;
           }
       }
     catch (const std::exception &)

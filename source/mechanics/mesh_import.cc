@@ -1,15 +1,26 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/child_process.h>
+#include <acf/base/console.h>
+#include <acf/base/input_file.h>
 #include <acf/mechanics/gmsh_model.h>
 #include <acf/mechanics/mesh_import.h>
+#include <acf/mechanics/mesh_limits.h>
+#include <acf/mechanics/msh_file.h>
+
+#include <deal.II/base/utilities.h>
 
 #include <gmsh.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <cmath>
+#include <cstdlib>
 #include <fstream>
 #include <iostream>
+#include <new>
 #include <sstream>
 #include <utility>
 
@@ -17,9 +28,6 @@ namespace ACF
 {
   namespace
   {
-    constexpr char not_a_mesh[] =
-      "a complete mesh file of gmsh, format 2.2 or 4.1";
-
     /** Keeps what is written to std::cout: the CAD kernel writes its errors
      * there, past gmsh. */
     class CapturedOutput
@@ -65,35 +73,6 @@ namespace ACF
       std::streambuf *original;
     };
 
-    /**
-     * The format ("2.2") of a .msh file. gmsh itself would take a file without
-     * the header for a script, and does not miss the end of the last section.
-     */
-    std::string
-    check_msh_file(std::ifstream &stream, const MeshSource &source)
-    {
-      std::string line, first, version, last;
-      while (std::getline(stream, line))
-        {
-          if (line.find_first_not_of(" \t\r") == std::string::npos)
-            continue;
-          if (first.empty())
-            {
-              first = line;
-              stream >> version;
-            }
-          last = line;
-        }
-      if (first.rfind("$MeshFormat", 0) != 0)
-        throw source.error("no line $MeshFormat at the start", not_a_mesh);
-      if (version != "2.2" && version != "4.1")
-        throw source.error("mesh format '" + version + "'", not_a_mesh);
-      if (last.rfind("$End", 0) != 0)
-        throw source.error("no line $End... at the end: the file is truncated",
-                           not_a_mesh);
-      return version;
-    }
-
     /** gmsh drops what follows the first statement in a last line that does
      * not end with a line break, and says nothing. */
     void
@@ -106,27 +85,69 @@ namespace ACF
                            "gmsh may ignore a part of it");
     }
 
-    /** Have gmsh read the file and, unless it is a mesh, mesh it. */
+    /**
+     * Stop if a largest element size leads to too many elements. Lengths, areas
+     * and volumes of the present shapes are at least covered by elements of
+     * this size. Nothing is known of shapes of gmsh's own kernel but their
+     * boxes.
+     */
     void
-    load(const std::filesystem::path &file,
-         const MeshFileKind kind,
-         const double mesh_size)
+    check_mesh_size(const double mesh_size,
+                    const double scale,
+                    const MeshSource &source)
+    {
+      double length = 0, x[2 * dim];
+      gmsh::model::getBoundingBox(-1, -1, x[0], x[1], x[2], x[3], x[4], x[5]);
+      for (unsigned int i = 0; i < dim; ++i)
+        length = std::max(length, x[i + dim] - x[i]);
+      double n_elements = length / mesh_size;
+
+      gmsh::vectorpair shapes;
+      gmsh::model::occ::getEntities(shapes);
+      std::array<double, dim + 1> measures = {{}};
+      for (const auto &[dimension, tag] : shapes)
+        if (dimension > 0)
+          {
+            double measure = 0;
+            gmsh::model::occ::getMass(dimension, tag, measure);
+            measures[dimension] += measure;
+          }
+      // of a line, a regular triangle and a regular tetrahedron with unit edges
+      constexpr std::array<double, dim + 1> units = {{0, 1, 0.433, 0.118}};
+      for (unsigned int d = 1; d <= dim; ++d)
+        n_elements =
+          std::max(n_elements,
+                   measures[d] / (units[d] * std::pow(mesh_size, d)));
+      check_number_of_cells(n_elements,
+                            true,
+                            source.section,
+                            "Mesh size",
+                            "'" + format_number(scale * mesh_size) + "'");
+    }
+
+    /** Have gmsh read the file of a geometry and mesh it. */
+    GmshMesh
+    mesh_geometry(const std::filesystem::path &file,
+                  const MeshFileKind kind,
+                  const double mesh_size,
+                  const double scale,
+                  const MeshSource &source)
     {
       if (kind == MeshFileKind::cad || kind == MeshFileKind::cad_with_unit)
         {
+          // in mm, the kernel's unit; setting it fails before the first STEP
+          // file
           gmsh::vectorpair shapes;
-          gmsh::option::setString("Geometry.OCCTargetUnit", "MM");
           gmsh::model::occ::importShapes(file.string(), shapes);
           gmsh::model::occ::synchronize();
         }
       else
         gmsh::open(file.string());
-      if (kind == MeshFileKind::mesh)
-        return;
 
       // after the script, to override it
       if (mesh_size > 0)
         {
+          check_mesh_size(mesh_size, scale, source);
           gmsh::option::setNumber("Mesh.MeshSizeMax", mesh_size);
           gmsh::model::mesh::clear();
         }
@@ -135,6 +156,49 @@ namespace ACF
       gmsh::model::mesh::getElements(types, tags, nodes, dim);
       if (types.empty())
         gmsh::model::mesh::generate(dim);
+      return gmsh_mesh();
+    }
+
+    /**
+     * The same in a process of its own: gmsh and the CAD kernel may crash, a
+     * script may end the process, and gmsh does not give back all memory.
+     */
+    GmshMesh
+    mesh_geometry_apart(const std::filesystem::path &file,
+                        const MeshFileKind kind,
+                        const double mesh_size,
+                        const double scale,
+                        const MeshSource &source)
+    {
+      const std::string allowed = "files that gmsh can read and mesh";
+      const auto task           = [&]() {
+        const GmshSession session;
+        const CapturedOutput output;
+        try
+          {
+            return Utilities::pack(
+              mesh_geometry(file, kind, mesh_size, scale, source), false);
+          }
+        catch (const std::string &message) // gmsh throws strings
+          {
+            const std::string more = output.text();
+            throw source.error("gmsh says: " + message +
+                                 (more.empty() ? "" : " " + more),
+                               allowed);
+          }
+      };
+      try
+        {
+          return Utilities::unpack<GmshMesh>(run_in_child_process(task), false);
+        }
+      catch (const ChildProcessEnded &error)
+        {
+          throw source.error(
+            "gmsh " + std::string(error.what()),
+            kind == MeshFileKind::script
+              ? "scripts that gmsh can run, without the command 'Exit'"
+              : allowed);
+        }
     }
 
     /** Ids from 1 for the different sets of names. */
@@ -182,35 +246,34 @@ namespace ACF
                          "cells of one kind, tetrahedra or hexahedra");
     }
 
-    /** Convert gmsh's current model. */
     MeshData
-    read_model(const ReferenceCell &reference_cell,
-               const double scale,
-               const bool was_meshed_here,
-               const bool repeats_elements,
-               const MeshSource &source)
+    convert(const GmshMesh &mesh,
+            const ReferenceCell &reference_cell,
+            const double scale,
+            const MeshFileKind kind,
+            const MeshSource &source)
     {
       MeshData data;
-      EntityNames volumes  = physical_groups(dim, source);
-      EntityNames surfaces = physical_groups(dim - 1, source);
+      EntityNames volumes  = physical_groups(mesh, dim, source);
+      EntityNames surfaces = physical_groups(mesh, dim - 1, source);
       data.reference_cell  = reference_cell;
       if (volumes.empty())
-        volumes = geometric_entities(dim);
+        volumes = geometric_entities(mesh, dim);
       if (surfaces.empty())
         {
-          surfaces                  = geometric_entities(dim - 1);
+          surfaces                  = geometric_entities(mesh, dim - 1);
           data.surfaces_of_geometry = true;
         }
 
-      std::vector<ElementBlock> cells = elements_of(dim, volumes);
-      std::vector<ElementBlock> faces = elements_of(dim - 1, surfaces);
+      std::vector<ElementBlock> cells = elements_of(mesh, dim, volumes);
+      std::vector<ElementBlock> faces = elements_of(mesh, dim - 1, surfaces);
       if (cells.empty())
         throw source.error(
           "a mesh without volume elements; surface elements: " +
             describe_elements(
-              elements_of(dim - 1, geometric_entities(dim - 1))),
+              elements_of(mesh, dim - 1, geometric_entities(mesh, dim - 1))),
           "three-dimensional meshes of solids");
-      if (was_meshed_here)
+      if (kind != MeshFileKind::mesh)
         for (const auto &volume : volumes)
           if (std::none_of(cells.begin(), cells.end(), [&](const auto &block) {
                 return block.entity == volume.first;
@@ -218,7 +281,7 @@ namespace ACF
             throw source.error("gmsh made no cells in volume " +
                                  std::to_string(volume.first),
                                "geometries that gmsh can mesh");
-      if (repeats_elements)
+      if (mesh.repeats_elements)
         {
           remove_repetitions(cells, volumes, source);
           remove_repetitions(faces, surfaces, source);
@@ -227,7 +290,8 @@ namespace ACF
 
       const auto cell_ids = assign_ids(volumes, data.regions);
       const auto face_ids = assign_ids(surfaces, data.surfaces);
-      read_elements(cells, cell_ids, faces, face_ids, scale, source, data);
+      read_elements(
+        mesh, cells, cell_ids, faces, face_ids, scale, source, data);
       return data;
     }
   } // namespace
@@ -257,38 +321,39 @@ namespace ACF
               const MeshSource &source)
   {
     const MeshFileKind kind = mesh_file_kind(file);
+    try
+      {
+        require_regular_file(file);
+      }
+    catch (const UnreadableFile &error)
+      {
+        throw source.error(error.what(),
+                           "the name of a file that exists, relative to the "
+                           "folder of the model file");
+      }
     std::ifstream stream(file, std::ios::binary);
-    // a directory can be opened, but not read
-    if (!stream || stream.peek() == std::ifstream::traits_type::eof())
-      throw source.error("no such file, or it is empty or cannot be read",
-                         "the name of a file that exists, relative to the "
-                         "folder of the model file");
-    bool repeats_elements = false;
-    if (kind == MeshFileKind::mesh)
-      repeats_elements = (check_msh_file(stream, source) == "2.2");
-    else if (kind == MeshFileKind::script)
+    if (kind == MeshFileKind::script)
       check_script_file(stream, source);
 
     // CAD is read in the kernel's unit, whose fixed tolerances would be too
     // coarse for small parts in m
     const double scale = (kind == MeshFileKind::cad_with_unit ? 1e-3 : 1.);
 
-    const GmshSession session;
-    const CapturedOutput output;
     try
       {
-        load(file, kind, mesh_size / scale);
-        return read_model(reference_cell,
-                          scale,
-                          kind != MeshFileKind::mesh,
-                          repeats_elements,
-                          source);
+        GmshMesh mesh;
+        if (kind != MeshFileKind::mesh)
+          mesh =
+            mesh_geometry_apart(file, kind, mesh_size / scale, scale, source);
+        const GmshSession session; // for the types of elements
+        if (kind == MeshFileKind::mesh)
+          mesh = read_msh_file(stream, source);
+        return convert(mesh, reference_cell, scale, kind, source);
       }
-    catch (const std::string &message) // gmsh throws strings
+    catch (const std::bad_alloc &)
       {
-        throw source.error("gmsh says: " + message +
-                             (output.text().empty() ? "" : " " + output.text()),
-                           "files that gmsh can read and mesh");
+        throw source.error("it needs more memory than there is",
+                           "meshes that fit into the memory");
       }
   }
 } // namespace ACF

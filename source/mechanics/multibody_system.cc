@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/elastic_force.h>
 #include <acf/mechanics/multibody_system.h>
@@ -660,5 +661,17 @@ namespace ACF
             cross_product_3d(marker_value(s, p), marker_value(F, p));
       }
     return reaction;
+  }
+
+
+
+  void
+  SystemState::exchange(Archive &archive)
+  {
+    archive("time", time);
+    archive("positions", positions);
+    archive("velocities", velocities);
+    archive("multipliers", multipliers);
+    archive("law values", law_values);
   }
 } // namespace ACF

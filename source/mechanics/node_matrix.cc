@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/mechanics/node_matrix.h>
@@ -484,5 +485,13 @@ namespace ACF
   BlockNodeMatrix::memory_consumption() const
   {
     return MemoryConsumption::memory_consumption(values);
+  }
+
+
+
+  void
+  BlockNodeMatrix::exchange(Archive &archive)
+  {
+    archive("values", values);
   }
 } // namespace ACF

@@ -6,6 +6,8 @@
 #include <acf/solvers/coupled_system.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 namespace ACF
 {
@@ -50,6 +52,41 @@ namespace ACF
           offset += factors[b]->size();
         }
   }
+
+
+
+  namespace
+  {
+    // ", the constraints of the joints 'a', 'b' depend on each other", if so.
+    std::string
+    dependent_joints(const MultibodySystem &system,
+                     const MarkerLinearization &linearization)
+    {
+      Eigen::SparseMatrix<double> D(system.n_constraints(),
+                                    system.n_marker_values());
+      D.setFromTriplets(linearization.constraints.begin(),
+                        linearization.constraints.end());
+      for (const auto &entry : linearization.constraints)
+        if (!std::isfinite(entry.value()))
+          return ", the gradient of a constraint of the joint '" +
+                 system.joints()[system.joint_of_row(entry.row())].name +
+                 "' is not finite";
+      const Eigen::MatrixXd null_space =
+        find_repeated_constraints(D * D.transpose()).null_space;
+      std::set<std::string> names;
+      for (unsigned int r = 0; r < null_space.rows(); ++r)
+        if (null_space.cols() > 0 &&
+            null_space.row(r).lpNorm<Eigen::Infinity>() > 1e-6)
+          names.insert("'" + system.joints()[system.joint_of_row(r)].name +
+                       "'");
+      std::string list;
+      for (const std::string &name : names)
+        list += (list.empty() ? "" : ", ") + name;
+      return list.empty() ? ""
+                          : ", as constraints of the joints " + list +
+                              " depend on each other";
+    }
+  } // namespace
 
 
 
@@ -130,8 +167,9 @@ namespace ACF
     marker_system.factorize(matrix);
     ++statistics.marker_factorizations;
     if (marker_system.info() != Eigen::Success)
-      throw SimulationError("The equations of the joints are singular: " +
-                            marker_system.lastErrorMessage());
+      throw SimulationError(
+        "the equations of the joints and force elements are singular" +
+        dependent_joints(system, linearization));
   }
 
 

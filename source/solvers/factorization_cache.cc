@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/solvers/factorization_cache.h>
 
@@ -104,7 +105,7 @@ namespace ACF
     const void *const kind = is_replaced
                                ? static_cast<const void *>(&body)
                                : static_cast<const void *>(&body.reference());
-    auto &[entry, step_size] =
+    auto &[entry, step_size, entry_bytes] =
       factors[Key(kind, std::real(shift), std::imag(shift))];
     step_size = present_step_size;
     if (!entry)
@@ -125,6 +126,7 @@ namespace ACF
           }
         catch (const SimulationError &error)
           {
+            n_bytes -= entry_bytes;
             factors.erase(Key(kind, std::real(shift), std::imag(shift)));
             throw SimulationError("Body '" + body.name() +
                                   "': " + error.what());
@@ -142,7 +144,9 @@ namespace ACF
         statistics.joint_column_bytes += entry->column_bytes();
         statistics.factor_backward_error =
           std::max(statistics.factor_backward_error, cost.backward_error);
-        n_bytes += cost.n_bytes + entry->column_bytes();
+        n_bytes -= entry_bytes;
+        entry_bytes = cost.n_bytes + entry->column_bytes();
+        n_bytes += entry_bytes;
         limit_memory();
       }
     return *entry;
@@ -180,13 +184,15 @@ namespace ACF
     for (auto it = factors.begin(); it != factors.end();)
       if (condition(*it))
         {
-          auto &factor = *it->second.factor;
-          const FactorizationStatistics &cost =
-            factor.factorization().statistics();
-          statistics.factor_entries -= cost.n_entries;
-          statistics.factor_bytes -= cost.n_bytes;
-          statistics.joint_column_bytes -= factor.column_bytes();
-          n_bytes -= cost.n_bytes + factor.column_bytes();
+          if (const auto &factor = it->second.factor)
+            {
+              const FactorizationStatistics &cost =
+                factor->factorization().statistics();
+              statistics.factor_entries -= cost.n_entries;
+              statistics.factor_bytes -= cost.n_bytes;
+              statistics.joint_column_bytes -= factor->column_bytes();
+            }
+          n_bytes -= it->second.n_bytes;
           it = factors.erase(it);
           ++n_dropped;
         }
@@ -238,6 +244,111 @@ namespace ACF
     drop(real_factors, is_own);
     drop(complex_factors, is_own);
     stiffness.erase(&body);
+  }
+
+
+
+  struct FactorizationCache::EntryRecord
+  {
+    unsigned int body;
+    bool is_own;
+    double real_shift;
+    double imaginary_shift;
+    double step_size;
+    std::size_t n_bytes;
+
+    void
+    exchange(Archive &archive)
+    {
+      archive("body", body);
+      archive("is its own", is_own);
+      archive("real shift", real_shift);
+      archive("imaginary shift", imaginary_shift);
+      archive("step size", step_size);
+      archive("bytes", n_bytes);
+    }
+  };
+
+
+
+  template <typename Number>
+  void
+  FactorizationCache::exchange(Archive &archive,
+                               const std::string &name,
+                               const std::vector<Body> &bodies,
+                               Factors<Number> &factors)
+  {
+    std::vector<EntryRecord> records;
+    for (const auto &[key, entry] : factors)
+      for (unsigned int b = 0; b < bodies.size(); ++b)
+        {
+          const auto &[kind, real_shift, imaginary_shift] = key;
+          const bool is_own = kind == static_cast<const void *>(&bodies[b]);
+          if (!is_own && kind != &bodies[b].reference())
+            continue;
+          records.push_back({b,
+                             is_own,
+                             real_shift,
+                             imaginary_shift,
+                             entry.step_size,
+                             entry.n_bytes});
+          break;
+        }
+    archive(name, records);
+    if (!archive.is_loading())
+      return;
+    factors.clear();
+    for (const EntryRecord &record : records)
+      {
+        const Body &body = bodies.at(record.body);
+        const void *const kind =
+          record.is_own ? static_cast<const void *>(&body)
+                        : static_cast<const void *>(&body.reference());
+        factors[Key(kind, record.real_shift, record.imaginary_shift)] = {
+          nullptr, record.step_size, record.n_bytes};
+        n_bytes += record.n_bytes;
+      }
+  }
+
+
+
+  void
+  FactorizationCache::exchange(Archive &archive,
+                               const std::vector<Body> &bodies)
+  {
+    archive("uses", n_uses);
+    std::vector<double> step_sizes;
+    std::vector<unsigned long> uses;
+    for (const auto &[step_size, use] : last_use)
+      {
+        step_sizes.push_back(step_size);
+        uses.push_back(use);
+      }
+    archive("step sizes", step_sizes);
+    archive("last uses", uses);
+    std::vector<unsigned int> replaced;
+    for (unsigned int b = 0; b < bodies.size(); ++b)
+      if (stiffness.count(&bodies[b]) > 0)
+        replaced.push_back(b);
+    archive("replaced stiffness", replaced);
+    if (archive.is_loading())
+      {
+        n_bytes = 0;
+        last_use.clear();
+        for (unsigned int k = 0; k < step_sizes.size(); ++k)
+          last_use[step_sizes[k]] = uses.at(k);
+        stiffness.clear();
+      }
+    for (const unsigned int b : replaced)
+      {
+        auto &own   = stiffness[&bodies.at(b)];
+        auto matrix = std::make_unique<BlockNodeMatrix>(
+          own ? *own : bodies[b].operators().stiffness_matrix);
+        archive("stiffness of body " + std::to_string(b), *matrix);
+        own = std::move(matrix);
+      }
+    exchange(archive, "real factors", bodies, real_factors);
+    exchange(archive, "complex factors", bodies, complex_factors);
   }
 
 

@@ -43,6 +43,21 @@ namespace ACF
 
 
 
+    // The first body whose forces cannot be computed; none if all can.
+    std::optional<unsigned int>
+    find_inverted(const MultibodySystem &system, const SystemVector &positions)
+    {
+      for (unsigned int b = 0; b < positions.size(); ++b)
+        {
+          NodalVector force(positions[b].size()), scratch(force);
+          if (!elastic_force(system.bodies()[b], positions[b], force, scratch))
+            return b;
+        }
+      return {};
+    }
+
+
+
     SystemVector
     difference(const SystemVector &x, const SystemVector &y)
     {
@@ -201,7 +216,11 @@ namespace ACF
       {
         step.failure = "it is turned inside out";
         if (!solve_newton(anchor, state, load_factor, increment))
-          return step;
+          {
+            moving_body =
+              find_inverted(system, state.positions).value_or(moving_body);
+            return step;
+          }
 
         Step newton;
         measure(increment.positions, newton);
@@ -377,7 +396,8 @@ namespace ACF
   EquilibriumSolver::fail(const SystemState &state,
                           const std::string &reason) const
   {
-    std::string message = "No static equilibrium was found after " +
+    std::string message = "No static equilibrium was found at time " +
+                          format_number(state.time) + " s after " +
                           std::to_string(n_iterations) +
                           " iterations. The body that moves most is '" +
                           system.bodies()[moving_body].name() + "': " + reason;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/time/error_controller.h>
 
 #include <algorithm>
@@ -123,5 +124,40 @@ namespace ACF
   {
     ++rejections;
     decrease(2);
+  }
+
+
+
+  void
+  ErrorController::start_at(const double time)
+  {
+    end         = time;
+    rest        = 0;
+    level       = 0;
+    previous    = 0;
+    allowed_one = allowed_two = 0;
+    patience                  = 1;
+    since_rise                = 1000;
+    rejections                = 0;
+  }
+
+
+
+  void
+  ErrorController::exchange(Archive &archive)
+  {
+    double kept_first_step = first_step;
+    archive("first step", kept_first_step);
+    archive("level", level);
+    archive("time", end);
+    archive("rest of the time", rest);
+    archive("previous error", previous);
+    archive("one point allowed", allowed_one);
+    archive("two points allowed", allowed_two);
+    archive("patience", patience);
+    archive("steps since the last rise", since_rise);
+    archive("rejections", rejections);
+    if (kept_first_step != first_step)
+      start_at(end);
   }
 } // namespace ACF

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/time/first_iteration.h>
 
 #include <algorithm>
@@ -52,5 +53,18 @@ namespace ACF
                       std::numeric_limits<double>::epsilon());
     age         = 0;
     is_measured = true;
+  }
+
+
+
+  void
+  FirstIteration::exchange(Archive &archive)
+  {
+    archive("step size", step_size);
+    archive("linearisation", kind);
+    archive("factor", factor);
+    archive("previous norm", previous_norm);
+    archive("age", age);
+    archive("is measured", is_measured);
   }
 } // namespace ACF

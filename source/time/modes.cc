@@ -83,8 +83,10 @@ namespace ACF
         target = source;
         if (!tangent.linearize(state))
           throw SimulationError(
-            "The modes cannot be computed: a body is "
-            "turned inside out.");
+            "The modes at time " + format_number(state.time) +
+            " s cannot be computed: body '" +
+            system.bodies()[tangent.inverted_body()].name() +
+            "' is turned inside out.");
         tangent.factorize(shift);
       }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/radau_stepper.h>
 
@@ -269,5 +270,18 @@ namespace ACF
       }
     update_laws(state, step_start);
     return state;
+  }
+
+
+
+  void
+  RadauStepper::exchange(Archive &archive)
+  {
+    archive("history", history);
+    archive("start of the last step", step_start);
+    archive("predictor", predictor);
+    archive("iteration", iteration);
+    archive("bodies whose turning is predicted", turning_is_better);
+    archive("expected error", expected_error);
   }
 } // namespace ACF

@@ -353,14 +353,19 @@ namespace ACF
   bool
   StageEquations::linearize(const std::vector<bool> &exact,
                             const StageRotations &rotations,
-                            StageTangent &tangent) const
+                            StageTangent &tangent,
+                            std::string &failure) const
   {
     tangent.reset(tau, rotations);
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
           if (exact[b] && !tangent.linearize_body(i, b, position(i, b)))
-            return false;
+            {
+              failure =
+                "body '" + system.bodies()[b].name() + "' is turned inside out";
+              return false;
+            }
         if (system.n_marker_values() == 0)
           continue;
         const Eigen::VectorXd s = system.marker_values(positions(i));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/time/stage_history.h>
 
 #include <cmath>
@@ -50,5 +51,24 @@ namespace ACF
     steps.front().size_before = before;
     steps.front().increments  = increments;
     steps.front().multipliers = multipliers;
+  }
+
+
+
+  void
+  StageHistory::Step::exchange(Archive &archive)
+  {
+    archive("size", size);
+    archive("size before", size_before);
+    archive("increments", increments);
+    archive("multipliers", multipliers);
+  }
+
+
+
+  void
+  StageHistory::exchange(Archive &archive)
+  {
+    archive("steps", steps);
   }
 } // namespace ACF

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/stage_iteration.h>
@@ -16,6 +17,60 @@ namespace ACF
     // Relative to the length of a body: far from the solution a tangent may be
     // so stiff against turning that short increments do not mean a small error.
     constexpr double largest_correction = 0.1;
+
+
+
+    // A cache that knows the bodies.
+    struct ExchangedCache
+    {
+      FactorizationCache &cache;
+      const std::vector<Body> &bodies;
+
+      void
+      exchange(Archive &archive)
+      {
+        cache.exchange(archive, bodies);
+      }
+    };
+
+
+
+    // " (worst for body 'a', joint 'b')": where increments are not finite or
+    // largest, and the joint that is violated most.
+    std::string
+    worst_objects(const MultibodySystem &system,
+                  const StageVector &increment,
+                  const StageConstraints &residual)
+    {
+      unsigned int body = 0, row = 0;
+      double largest = -1, violation = 0;
+      // not-a-number is the worst of all, and stays
+      const auto is_worse = [](const double value, const double than) {
+        return !std::isnan(than) && !(value <= than);
+      };
+      for (const SystemVector &stage : increment)
+        for (unsigned int b = 0; b < stage.size(); ++b)
+          if (const double norm = relative_norm(system.bodies()[b], stage[b]);
+              is_worse(norm, largest))
+            {
+              largest = norm;
+              body    = b;
+            }
+      for (const Eigen::VectorXd &g : residual)
+        for (unsigned int r = 0; r < g.size(); ++r)
+          if (is_worse(std::abs(g(r)), violation))
+            {
+              violation = std::abs(g(r));
+              row       = r;
+            }
+      const std::string name =
+        " (worst for body '" + system.bodies()[body].name() + "'";
+      // what is left of constraints in any iteration is no reason
+      if (violation <= 1e-6 * system.bodies()[body].operators().length)
+        return name + ")";
+      return name + ", joint '" +
+             system.joints()[system.joint_of_row(row)].name + "')";
+    }
   } // namespace
 
 
@@ -105,6 +160,9 @@ namespace ACF
     catch (const SimulationError &error)
       {
         report.failure = error.what();
+        // a sentence becomes a part of one
+        if (!report.failure.empty() && report.failure.back() == '.')
+          report.failure.pop_back();
         return false;
       }
   }
@@ -208,6 +266,8 @@ namespace ACF
         ++statistics.newton_iterations;
         if (!judge(norms, patience, report))
           {
+            report.failure +=
+              worst_objects(system, increment, equations.constraint_residual());
             if (!std::isfinite(norms.back()))
               std::fill(marked.begin(), marked.end(), true);
             else if (norms.size() > 1)
@@ -230,7 +290,9 @@ namespace ACF
             return;
           }
       }
-    report.failure = "the iteration did not reach its tolerance";
+    report.failure =
+      "the iteration did not reach its tolerance" +
+      worst_objects(system, increment, equations.constraint_residual());
     mark_bodies(increment);
   }
 
@@ -359,11 +421,8 @@ namespace ACF
     const auto solve = [&](StageVector &r,
                            StageConstraints &g,
                            std::string &failure) {
-      if (!equations.linearize(marked, rotations, *tangent))
-        {
-          failure = "a body is turned inside out";
-          return false;
-        }
+      if (!equations.linearize(marked, rotations, *tangent, failure))
+        return false;
       unsigned int n_iterations;
       const double reduction = tangent->solve(*stage_solver,
                                               1e-3,
@@ -475,5 +534,21 @@ namespace ACF
       }
     linearization = Linearization::exact;
     return true;
+  }
+
+
+
+  void
+  StageIteration::exchange(Archive &archive)
+  {
+    archive("linearisation", linearization);
+    archive("marked bodies", marked);
+    archive("waiting steps", waiting_steps);
+    archive("next wait", next_wait);
+    archive("failures", n_failures);
+    archive("round-off of constraints", constraint_round_off);
+    archive("first iteration", first_iteration);
+    ExchangedCache exchanged{cache, system.bodies()};
+    archive("factorisations", exchanged);
   }
 } // namespace ACF

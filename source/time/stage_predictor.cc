@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/linear_combination.h>
 #include <acf/time/stage_predictor.h>
 
@@ -179,5 +180,24 @@ namespace ACF
            [](const Defect &x, const Defect &y, const unsigned int i) {
              return x.multipliers[i].dot(y.multipliers[i]);
            });
+  }
+
+
+
+  void
+  StagePredictor::Defect::exchange(Archive &archive)
+  {
+    archive("increments", increments);
+    archive("multipliers", multipliers);
+  }
+
+
+
+  void
+  StagePredictor::exchange(Archive &archive)
+  {
+    archive("defects", defects);
+    archive("products", products);
+    archive("products of multipliers", multiplier_products);
   }
 } // namespace ACF

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/time/step_controller.h>
 
 #include <algorithm>
@@ -12,16 +13,17 @@ namespace ACF
                                  const unsigned int max_halvings)
     : base_step_size(base_step_size)
     , max_halvings(max_halvings)
-  {}
+  {
+    Assert(max_halvings <= finest, ExcIndexRange(max_halvings, 0, finest + 1));
+  }
 
 
 
   double
   StepController::time() const
   {
-    return (base_steps +
-            std::ldexp(fraction, -static_cast<int>(max_halvings))) *
-           base_step_size;
+    return start +
+           (base_steps + std::ldexp(fraction, -finest)) * base_step_size;
   }
 
 
@@ -38,8 +40,8 @@ namespace ACF
   StepController::accept()
   {
     const std::uint64_t one = 1;
-    fraction += one << (max_halvings - n_halvings);
-    if (fraction == one << max_halvings)
+    fraction += one << (finest - n_halvings);
+    if (fraction == one << finest)
       {
         ++base_steps;
         fraction = 0;
@@ -48,7 +50,7 @@ namespace ACF
     ++n_successes;
 
     if (n_halvings > 0 && n_successes >= needed_successes &&
-        fraction % (one << (max_halvings - n_halvings + 1)) == 0)
+        fraction % (one << (finest - n_halvings + 1)) == 0)
       {
         --n_halvings;
         n_successes  = 0;
@@ -63,7 +65,7 @@ namespace ACF
   bool
   StepController::halve()
   {
-    if (n_halvings == max_halvings)
+    if (n_halvings >= max_halvings)
       return false;
     if (just_doubled)
       needed_successes = std::min(1024U, 2 * needed_successes);
@@ -71,5 +73,36 @@ namespace ACF
     n_successes  = 0;
     ++n_halvings;
     return true;
+  }
+
+
+
+  void
+  StepController::start_at(const double time)
+  {
+    start      = time;
+    base_steps = fraction = 0;
+    n_halvings = n_successes = 0;
+    needed_successes         = 2;
+    just_doubled             = false;
+  }
+
+
+
+  void
+  StepController::exchange(Archive &archive)
+  {
+    double kept_step_size = base_step_size;
+    archive("base step size", kept_step_size);
+    archive("start", start);
+    archive("base steps", base_steps);
+    archive("fraction", fraction);
+    archive("halvings", n_halvings);
+    archive("successes", n_successes);
+    archive("needed successes", needed_successes);
+    archive("just doubled", just_doubled);
+    if (kept_step_size != base_step_size)
+      start_at(start +
+               (base_steps + std::ldexp(fraction, -finest)) * kept_step_size);
   }
 } // namespace ACF

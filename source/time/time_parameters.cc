@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/exceptions.h>
+#include <acf/base/console.h>
+#include <acf/base/input_problems.h>
 #include <acf/time/time_parameters.h>
 
 #include <deal.II/base/parameter_handler.h>
@@ -11,6 +12,17 @@
 
 namespace ACF
 {
+  namespace
+  {
+    // More would take a week with small bodies, and is rather a mistake.
+    constexpr double max_steps = 1e8;
+
+    // A petabyte, MB.
+    constexpr double max_factor_memory = 1e9;
+  } // namespace
+
+
+
   void
   TimeParameters::add_parameters(ParameterHandler &prm)
   {
@@ -50,7 +62,7 @@ namespace ACF
                       "Memory for factorisations of different step sizes; "
                       "those that were not used for the longest time are "
                       "dropped. The present ones may need more. Units: MB.",
-                      Patterns::Double(0));
+                      Patterns::Double(0, max_factor_memory));
     prm.add_parameter(
       "Newton tolerance",
       newton_tolerance,
@@ -106,42 +118,54 @@ namespace ACF
   void
   TimeParameters::check() const
   {
-    const auto require_positive = [](const std::string &entry,
-                                     const double value) {
+    InputProblems problems;
+    const auto refuse = [&](const std::string &entry,
+                            const std::string &found,
+                            const std::string &allowed) {
+      problems.add(InputError("Time integration", entry, found, allowed));
+    };
+    const auto require_positive = [&](const std::string &entry,
+                                      const double value) {
       if (!(value > 0))
-        throw InputError("Time integration",
-                         entry,
-                         "nothing or zero",
-                         "a positive number");
+        refuse(entry, "nothing or zero", "a positive number");
     };
     require_positive("End time", end_time);
     if (tolerance == 0)
       require_positive("Step size", step_size);
     if (newton_tolerance > 0 && newton_tolerance < 1e-14)
-      throw InputError("Time integration",
-                       "Newton tolerance",
-                       "a tolerance below round-off",
-                       "0 or a number in [1e-14, 0.01]");
-    if (step_size > end_time)
-      throw InputError("Time integration",
-                       "Step size",
-                       "a step larger than the End time",
-                       "a positive number not larger than the End time");
+      refuse("Newton tolerance",
+             "a tolerance below round-off",
+             "0 or a number in [1e-14, 0.01]");
+    if (end_time > 0 && step_size > end_time)
+      refuse("Step size",
+             "a step larger than the End time",
+             "a positive number not larger than the End time");
+    if (tolerance == 0 && step_size > 0 && end_time / step_size > max_steps)
+      refuse("Step size",
+             "'" + format_number(step_size) + "', which makes " +
+               format_number(end_time / step_size) + " steps to the End time",
+             "steps of which at most " + format_number(max_steps) +
+               " make a simulation");
     if (tolerance > 0 && tolerance < 1e-12)
-      throw InputError("Time integration",
-                       "Tolerance",
-                       "a tolerance below round-off",
-                       "0 or a number in [1e-12, 0.1]");
+      refuse("Tolerance",
+             "a tolerance below round-off",
+             "0 or a number in [1e-12, 0.1]");
     if (tolerance == 0 && max_step_size > 0)
-      throw InputError("Time integration",
-                       "Maximal step size",
-                       "a limit of steps of the same size",
-                       "0, or a Tolerance that chooses the steps");
+      refuse("Maximal step size",
+             "a limit of steps of the same size",
+             "0, or a Tolerance that chooses the steps");
     if (max_step_size > 0 && step_size > max_step_size)
-      throw InputError("Time integration",
-                       "Step size",
-                       "a step larger than the Maximal step size",
-                       "a number not larger than the Maximal step size");
+      refuse("Step size",
+             "a step larger than the Maximal step size",
+             "a number not larger than the Maximal step size");
+    if (max_step_size > 0 && end_time / max_step_size > max_steps)
+      refuse("Maximal step size",
+             "'" + format_number(max_step_size) + "', which makes more than " +
+               format_number(end_time / max_step_size) +
+               " steps to the End time",
+             "steps of which at most " + format_number(max_steps) +
+               " make a simulation");
+    problems.throw_all();
   }
 
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/time/validity_monitor.h>
@@ -219,8 +220,7 @@ namespace ACF
                                 " s passes the limits of its strain: " + passed;
     if (parameters.action == ValidityParameters::Action::stop)
       throw SimulationError(
-        "The simulation stops, as 'Validity/Action' asks: " + message +
-        ". The results up to this time are kept.");
+        "The simulation stops, as 'Validity/Action' asks: " + message + ".");
     print_warning(warnings,
                   message + ". Its results are doubtful from here on");
   }
@@ -244,5 +244,34 @@ namespace ACF
     if (all_stayed)
       stream
         << "Validity: all bodies stayed within the limits of their strain\n";
+  }
+
+
+
+  void
+  ValidityMonitor::Maximum::exchange(Archive &archive)
+  {
+    archive("value", value);
+    archive("time", time);
+  }
+
+
+
+  void
+  ValidityMonitor::Record::exchange(Archive &archive)
+  {
+    archive("maxima", maxima);
+    archive("has left", has_left);
+    archive("left at", left_at);
+  }
+
+
+
+  void
+  ValidityMonitor::exchange(Archive &archive)
+  {
+    Observer::exchange(archive);
+    archive("next check", next_check);
+    archive("bodies", bodies);
   }
 } // namespace ACF

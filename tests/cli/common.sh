@@ -61,6 +61,28 @@ expect_one_line() {
   check "$1: stderr does not begin with the program's name" grep -q '^acf-dealii: ' stderr
 }
 
+# The errors of the last run are lines of the program's form that name these
+# lines of a file, in this order: expect_lines WHAT FILE LINE ...
+expect_lines() {
+  local what=$1 file=$2 lines
+  shift 2
+  check "$what: a line on stderr does not begin with the program's name" \
+    [ -z "$(grep -v '^acf-dealii: ' stderr)" ]
+  lines=$(sed -n "s|^acf-dealii: $file:\([0-9]*\):.*|\1|p" stderr | tr '\n' ' ')
+  check "$what: errors in the lines $lines instead of $*" [ "$lines" = "$* " ]
+}
+
+# Changes good.prm by sed and expects a warning about it:
+# expect_warning SED_SCRIPT TEXT ...
+expect_warning() {
+  local script=$1
+  shift
+  sed "$script" good.prm >doubtful.prm
+  expect_status 0 --validate --quiet doubtful.prm
+  expect_one_line "$script"
+  expect_text stderr "$script" 'acf-dealii: warning: ' "$@"
+}
+
 # Changes good.prm by sed and expects an error in it:
 # expect_error SED_SCRIPT LINE SECTION ENTRY FOUND ALLOWED [TEXT ...]
 # An empty section, entry or line is not looked for.

@@ -86,7 +86,7 @@ expect_error '/Cross axis/d' 30 Joints/pin 'Cross axis' nothing 'the second axis
 expect_error 's/Cross axis = 0, 1, 0/Cross axis = 0, 1, 1/' 34 Joints/pin 'Cross axis' \
   'a vector that is not across the axis' 'a vector perpendicular'
 expect_error '/Cross axis/a set Free = rotation x' 35 Joints/pin Free "'rotation x'" 'motions that the type'
-expect_error 's/Type    = revolute/Type    = fixed/' 27 Joints/motor Axis 'a' "nothing for the type 'fixed'"
+expect_error 's/Type    = revolute/Type    = fixed/; /set Angle/d' 27 Joints/motor Axis 'a' "nothing for the type 'fixed'"
 
 # --- drives ---
 
@@ -97,6 +97,8 @@ expect_error 's/(1-cos(t))/sin(t)/' 26 Joints/motor Between \
 expect_error 's/(1-cos(t))/*cosine(t)/' 28 Joints/motor Angle "'0.1**cosine(t)' (Unexpected operator" 'an expression of the time t'
 expect_error 's/set Angle .*/set Angle = 0*t\n    set Angular velocity = 1/' 29 Joints/motor 'Angular velocity' \
   "'1' beside an Angle" 'one of the two'
+expect_error 's/set Angle .*/set Angular velocity = sin(t)/; s/= 0.02/= 1e6/; s/= 0.01$/= 1/' 28 Joints/motor 'Angular velocity' \
+  'a function that would be integrated over 1e+06 s' 'an Angle in simulations'
 expect_error 's/set Angle .*/set Displacement = t/' 28 Joints/motor Displacement '' 'nothing for the type'
 
 # --- force elements, masses, loads ---

@@ -152,7 +152,7 @@ expect_statistic warns 'validity checks' 11
 expect_status 1 --output-directory stops "${soft[@]}" --set 'Validity/Action=stop' "$pendulum"
 expect_one_line 'a body beyond its limits, and stop'
 expect_text stderr 'a body beyond its limits, and stop' "'Validity/Action'" "body 'pendulum' at time 0.001 s" \
-  '(limit 1e-06)' 'results up to this time are kept'
+  '(limit 1e-06)' 'results up to time'
 expect_statistic stops finished false
 expect_statistic stops steps 1
 check 'rows of a run that was stopped' [ "$(wc -l <stops/probes.csv)" -eq 3 ]
@@ -166,8 +166,8 @@ expect_status 1 --output-directory fails "${no_vtu[@]}" --set 'Validity/Action=i
   --set 'Time integration/Newton tolerance=1e-14' \
   --set 'Time integration/Maximal halvings=1' "$pendulum"
 expect_one_line 'a step that fails'
-expect_text stderr 'a step that fails' 'The step of' 's at time' 'failed after' 'halving' iteration
-expect_files fails probes.csv statistics.json used_parameters.prm
+expect_text stderr 'a step that fails' 'The step of' 's at time' 'failed after' 'halving' iteration "(worst for body 'pendulum'"
+expect_files fails checkpoint.h5 probes.csv statistics.json used_parameters.prm
 expect_statistic fails finished false
 expect_statistic fails halvings '[1-9][0-9]*'
 steps=$(sed -n 's/^ *"steps": \([0-9]*\),$/\1/p' fails/statistics.json)

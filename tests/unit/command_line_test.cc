@@ -35,8 +35,26 @@ TEST(CommandLine, HasDefaults)
   EXPECT_EQ(result.model, "m.prm");
   EXPECT_TRUE(result.overrides.empty());
   EXPECT_FALSE(result.output_directory.has_value());
+  EXPECT_FALSE(result.restart.has_value());
+  EXPECT_FALSE(result.overwrite);
   EXPECT_EQ(result.n_threads, 0);
   EXPECT_FALSE(result.quiet);
+}
+
+TEST(CommandLine, ReadsOptionsOfRuns)
+{
+  EXPECT_EQ(parse_command_line({"--restart=a/checkpoint.h5", "m.prm"}).restart,
+            std::filesystem::path("a/checkpoint.h5"));
+  EXPECT_TRUE(parse_command_line({"--overwrite", "m.prm"}).overwrite);
+  EXPECT_EQ(error_of({"--overwrite", "--restart=a", "m.prm"}),
+            "command line: found --restart and --overwrite; allowed: one of "
+            "them");
+  EXPECT_EQ(error_of({"--validate", "--restart=a", "m.prm"}),
+            "command line: found --restart with --validate; allowed: one of "
+            "them");
+  EXPECT_EQ(error_of({"--restart", "--quiet", "m.prm"}),
+            "command line: found --restart without a value; allowed: --restart "
+            "CHECKPOINT");
 }
 
 TEST(CommandLine, ReadsAllOptions)
@@ -105,7 +123,7 @@ TEST(CommandLine, RejectsUnknownOptions)
 {
   const std::string allowed =
     "; allowed: --help, --version, --print-parameters, --validate, --set, "
-    "--output-directory, --threads, --quiet";
+    "--output-directory, --restart, --overwrite, --threads, --quiet";
   EXPECT_EQ(error_of({"m.prm", "--thread", "2"}),
             "command line: found the unknown option '--thread'" + allowed +
               " (did you mean '--threads'?)");

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/exceptions.h>
+
 #include <cmath>
+#include <limits>
 
 #include <unit/dense_stage_system.h>
 
@@ -306,4 +309,39 @@ TEST(CoupledSystem, RepeatedConstraintsShareTheLoad)
   report("repeated joints, positions against one joint", position_error);
   report("repeated joints, forces against half of one joint's",
          multiplier_error);
+}
+
+TEST(CoupledSystem, SingularEquationsNameTheJoints)
+{
+  Random random;
+  SystemParameters parameters;
+  parameters.bodies = {body("a", tetrahedra), body("b", hexahedra)};
+  parameters.joints = {joint("revolute", "a: x min, b: x min"),
+                       joint("spherical", "b: x max, ground")};
+  const MultibodySystem system(parameters, ".");
+  Statistics statistics;
+  FactorizationCache cache(statistics);
+  DiagonalizedStageSolver solver(system, radau_iia(2), cache, statistics);
+  const auto rotations = random_rotations(system, random, 2);
+  // a constraint of the second joint without a gradient, and with a wrong one
+  for (const double gradient : {0., std::numeric_limits<double>::quiet_NaN()})
+    {
+      MarkerLinearization linearization = random_linearization(system, random);
+      for (auto &entry : linearization.constraints)
+        if (entry.row() == 6)
+          entry = {entry.row(), entry.col(), gradient};
+      try
+        {
+          solver.prepare(1e-3, rotations, linearization);
+          ADD_FAILURE() << "no error with the gradient " << gradient;
+        }
+      catch (const SimulationError &error)
+        {
+          const std::string message = error.what();
+          EXPECT_NE(message.find("'b: x max, ground'"), std::string::npos)
+            << message;
+          EXPECT_EQ(message.find("'a: x min, b: x min'"), std::string::npos)
+            << message;
+        }
+    }
 }

@@ -110,8 +110,10 @@ TEST(StageTangent, AgainstDifferencesOfTheResidual)
             lambda[i] = random_vector(lambda[i].size(), 1e4, random);
           }
         StageTangent tangent(system, tableau);
-        ASSERT_TRUE(
-          equations.linearize({true, true}, equations.rotations(), tangent));
+        std::string failure;
+        ASSERT_TRUE(equations.linearize(
+          {true, true}, equations.rotations(), tangent, failure))
+          << failure;
         StageVector product(z);
         StageConstraints constraint_product(lambda);
         tangent.vmult(product, constraint_product, z, lambda);
@@ -179,7 +181,9 @@ TEST(StageTangent, GmresSolvesWithThePreconditioner)
   equations.start_step(state, 1e-3);
   const StageRotations rotations = equations.rotations();
   StageTangent tangent(system, tableau);
-  ASSERT_TRUE(equations.linearize({true, true}, rotations, tangent));
+  std::string failure;
+  ASSERT_TRUE(equations.linearize({true, true}, rotations, tangent, failure))
+    << failure;
   DiagonalizedStageSolver solver(system, tableau, cache, statistics);
   solver.prepare(1e-3, rotations, equations.mean_linearization());
 

@@ -253,7 +253,7 @@ TEST_F(MeshFiles, FilesThatCannotBeRead)
   expect_mesh_error("set Mesh = nowhere/b.msh",
                     {"'Mesh'", "nowhere/b.msh", "no such file"});
   std::filesystem::create_directory(folder + "/folder.msh");
-  expect_mesh_error("set Mesh = folder.msh", {"cannot be read"}, folder);
+  expect_mesh_error("set Mesh = folder.msh", {"a directory"}, folder);
   expect_error("empty.msh", "", {"empty"});
   expect_error("text.msh", "hello\n", {"no line $MeshFormat", "2.2 or 4.1"});
   expect_error("old.msh",
@@ -265,7 +265,7 @@ TEST_F(MeshFiles, FilesThatCannotBeRead)
                {"truncated"});
   expect_error("elements.msh",
                good.substr(0, good.find("12 4 2")) + "$EndElements\n",
-               {"gmsh says"});
+               {"line 16", "'$EndElements' instead of"});
   convert("two_boxes.geo", "v41.msh");
   const std::string long_file = read("v41.msh");
   expect_error("half.msh",
@@ -280,6 +280,63 @@ TEST_F(MeshFiles, FilesThatCannotBeRead)
   expect_error("unknown_node.msh",
                msh(two_tetrahedra_nodes, {"11 4 2 1 1 1 2 3 77"}),
                {"77"});
+}
+
+TEST_F(MeshFiles, FilesThatPromiseTooMuch)
+{
+  const std::string head = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$Nodes\n";
+  expect_error("nodes.msh",
+               head + "1 1000000000000 1 2\n3 1 0 1\n1\n0 0 0\n$EndNodes\n",
+               {"line 5",
+                "1000000000000 nodes",
+                "more than the file can hold"});
+  expect_error("block.msh",
+               head + "1 1 1 1\n3 1 0 4000000000\n1\n0 0 0\n$EndNodes\n",
+               {"line 6", "4000000000 nodes", "more than the file can hold"});
+  expect_error("negative.msh",
+               head + "1 -1 1 1\n3 1 0 1\n1\n0 0 0\n$EndNodes\n",
+               {"line 5", "'-1' instead of a count of nodes"});
+  expect_error("more.msh",
+               head + "1 1 1 1\n3 1 0 2\n1 2\n0 0 0\n1 1 1\n$EndNodes\n",
+               {"line 9", "1 nodes announced, but 2"});
+  expect_error("dimension.msh",
+               head + "1 1 1 1\n7 1 0 1\n1\n0 0 0\n$EndNodes\n",
+               {"line 6", "the dimension 7"});
+
+  const auto &nodes = two_tetrahedra_nodes;
+  expect_error("type.msh",
+               msh(nodes, {"11 999 2 1 1 1 2 3 4"}),
+               {"line 15", "type 999"});
+  expect_error("polygon.msh",
+               msh(nodes, {"11 34 2 1 1 1 2 3 4"}),
+               {"line 15", "type 34", "Polygon"});
+  expect_error("infinite.msh",
+               msh({"1 0 0 inf"}, two_tetrahedra),
+               {"line 6", "node 1", "not finite"});
+  expect_error("huge.msh",
+               msh({"1 0 0 1e999"}, two_tetrahedra),
+               {"line 6", "'1e999' instead of a coordinate"});
+  expect_error("twice.msh",
+               msh({"1 0 0 0", "1 0 0 1"}, two_tetrahedra),
+               {"line 7", "the node 1 a second time"});
+  expect_error("no_elements.msh",
+               head + "1 1 1 1\n3 1 0 1\n1\n0 0 0\n$EndNodes\n",
+               {"without a section $Elements"});
+  expect_error("name.msh",
+               msh(nodes, two_tetrahedra, "$PhysicalNames\n1\n3 1 solid\n"),
+               {"line 6", "without a name"});
+  expect_error("junk.msh",
+               msh(nodes, two_tetrahedra, "junk\n"),
+               {"line 4", "'junk' instead of a section"});
+  write("comment.msh",
+        msh(nodes, two_tetrahedra, "$Comments\n7\n$EndComments\n"));
+  EXPECT_NEAR(volume(*mesh_of("set Mesh = comment.msh", folder)), 0.5, 1e-14);
+
+  // every binary file that is cut short
+  convert("two_boxes.geo", "binary.msh", 3, 4.1, true);
+  const std::string binary = read("binary.msh");
+  for (std::size_t n = 40; n < binary.size() - 13; n += binary.size() / 20)
+    expect_error("cut.msh", binary.substr(0, n), {"found"});
 }
 
 TEST_F(MeshFiles, CellsOfTheWrongKind)

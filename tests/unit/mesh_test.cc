@@ -156,7 +156,7 @@ TEST(MeshParameters, ValuesThatMakeNoSense)
                     {"'Box to'", "'1, -0.5, 3'", "larger", "-1, -0.5, 0"});
   expect_mesh_error(box + "set Cells = 2, 3\n", {"'Cells'", "'2, 3'", "three"});
   expect_mesh_error(box + "set Cells = 1000, 1000, 1000\n",
-                    {"'Cells'", "'1000, 1000, 1000'", "100 million"});
+                    {"'Cells'", "'1000, 1000, 1000'", "20 million"});
   expect_mesh_error(cylinder("2, 2"), {"'Cells'", "'2, 2'", "at least 3"});
   expect_mesh_error(cylinder("4, 2, 2"), {"'Cells'", "'4, 2, 2'", "two"});
   expect_mesh_error(cylinder("4, 2", "0, 0, 0"),

@@ -9,6 +9,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <sstream>
 
 using namespace ACF;
 
@@ -119,9 +120,24 @@ namespace
   {
     return message_of([&]() {
       const auto file = ParameterFile::from_text(text, overrides, "m.prm");
-      Declarations declared(file.names("Bodies"));
-      file.parse(declared.prm);
+      InputProblems problems = file.problems();
+      Declarations declared(file.names("Bodies", problems));
+      file.parse(declared.prm, problems);
+      problems.throw_all();
     });
+  }
+
+  /** The lines of m.prm that errors name. */
+  std::vector<unsigned int>
+  lines_of(const std::string &errors)
+  {
+    std::vector<unsigned int> lines;
+    std::istringstream stream(errors);
+    const std::string begin = "m.prm:";
+    for (std::string line; std::getline(stream, line);)
+      if (line.rfind(begin, 0) == 0)
+        lines.push_back(std::stoul(line.substr(begin.size())));
+    return lines;
   }
 
   /** A model whose entry in line 5 is the only one of its only body. */
@@ -232,6 +248,10 @@ TEST(ParameterFile, RejectsValuesAgainstTheirPattern)
     {"Angle", "inf", "a number"},
     {"Angle", "-infinity", "a number"},
     {"Angle", "1e400", "a number"},
+    {"Angle", "-2e100", "a number, none larger than 1e100 in size"},
+    {"Position",
+     "1, 2, 1e101",
+     "a list of 3 numbers separated by ',', none larger than 1e100 in size"},
     {"Angle", "-1e400", "a number"},
     {"Angle", "+1e-400", "a number"},
     {"Angle", "1,5", "a number"},
@@ -321,8 +341,9 @@ TEST(ParameterFile, RejectsWrongLines)
 {
   const std::string allowed =
     "; allowed: 'set NAME = VALUE', 'subsection "
-    "NAME', 'end', comments after '#'";
+    "NAME', 'end', 'include FILE', comments after '#'";
   for (const std::string line : {"Title = 3",
+                                 "include",
                                  "Set Title = 3",
                                  "set Title",
                                  "set",
@@ -334,9 +355,6 @@ TEST(ParameterFile, RejectsWrongLines)
               "m.prm:2: found '" + line + "'" + allowed);
   EXPECT_EQ(error_of("subsection Output\nfoo\nend"),
             "m.prm:2: section 'Output', found 'foo'" + allowed);
-  EXPECT_EQ(error_of("include other.prm"),
-            "m.prm:1: found 'include other.prm'; allowed: one file for a "
-            "model, without 'include'");
   EXPECT_EQ(error_of("subsection a/b\nend"),
             "m.prm:1: found 'subsection a/b'; allowed: names without '/'");
   EXPECT_EQ(error_of("set Title = x\n# in C:\\\nset Title = y"),
@@ -344,7 +362,8 @@ TEST(ParameterFile, RejectsWrongLines)
             "comments without '\\' at the end");
   EXPECT_EQ(error_of("set Title = x \\ # comment\n  y"),
             "m.prm:1: entry 'Title': found 'x \\'; allowed: '\\' only as the "
-            "last character of a continued line");
+            "last character of a continued line\nm.prm:2: found 'y'" +
+              allowed);
 }
 
 TEST(ParameterFile, RejectsUnbalancedSubsections)
@@ -363,18 +382,301 @@ TEST(ParameterFile, RejectsRepetitions)
                      " set Probes = a\nend"),
             "m.prm:4: section 'Output', entry 'Probes': found the entry a "
             "second time (first in line 3); allowed: each entry once");
-  EXPECT_EQ(error_of("subsection Bodies\nsubsection a\nend\nsubsection "
-                     "a\nend\nend"),
-            "m.prm:4: section 'Bodies', found the subsection 'Bodies/a' a "
-            "second time (first in line 2); allowed: each subsection once");
+  EXPECT_EQ(error_of("subsection Bodies\nset Names = a\nsubsection a\nend\n"
+                     "subsection a\nend\nend"),
+            "m.prm:5: section 'Bodies', found the subsection 'Bodies/a' a "
+            "second time (first in line 3); allowed: each subsection once");
 }
 
-TEST(ParameterFile, ReportsTheFirstProblemInTheFile)
+TEST(ParameterFile, ReportsAllProblemsInTheOrderOfTheFile)
 {
-  EXPECT_EQ(error_of("set Angle = 1\nset Angle = 1\nfoo\n").substr(0, 8),
-            "m.prm:2:");
+  EXPECT_EQ(lines_of(error_of("set Angle = 1\nset Angle = 1\nfoo\n")),
+            (std::vector<unsigned int>{1, 2, 3}));
   // the missing end is known last, but belongs to line 1
-  EXPECT_EQ(error_of("subsection Output\nfoo\n").substr(0, 8), "m.prm:1:");
+  EXPECT_EQ(lines_of(error_of("subsection Output\nfoo\n")),
+            (std::vector<unsigned int>{1, 2}));
+  // of the text, of values, and of the command line, which is the last
+  EXPECT_EQ(error_of("set Title = x\n"
+                     "Subsection\n"
+                     "subsection Time integration\n"
+                     "  set Stages = 7\n"
+                     "  set Colour = red\n"
+                     "end\n"
+                     "subsection Bodies\n"
+                     "  set Names = a\n"
+                     "  subsection a\n"
+                     "    set Angle = x\n"
+                     "    set Angle = 1\n"
+                     "  end\n"
+                     "end\n",
+                     {"Bodies/a/Rigid=maybe", "Title"}),
+            "m.prm:2: found 'Subsection'; allowed: 'set NAME = VALUE', "
+            "'subsection NAME', 'end', 'include FILE', comments after '#'\n"
+            "m.prm:4: section 'Time integration', entry 'Stages': found '7'; "
+            "allowed: an integer in [2, 3]\n"
+            "m.prm:5: section 'Time integration', entry 'Colour': found an "
+            "unknown entry; allowed: 'Stages'\n"
+            "m.prm:10: section 'Bodies/a', entry 'Angle': found 'x'; allowed: "
+            "a number\n"
+            "m.prm:11: section 'Bodies/a', entry 'Angle': found the entry a "
+            "second time (first in line 10); allowed: each entry once\n"
+            "command line: found --set 'Title'; allowed: --set "
+            "'Section/Entry=value'\n"
+            "command line: --set 'Bodies/a/Rigid=maybe': section 'Bodies/a', "
+            "entry 'Rigid': found 'maybe'; allowed: true or false");
+}
+
+TEST(ParameterFile, LeavesOutWhatFollowsFromOtherProblems)
+{
+  // all that a misspelt subsection contains
+  EXPECT_EQ(lines_of(error_of("subsection Time inegration\n"
+                              "  set Stages = 2\n"
+                              "  set Colour = red\n"
+                              "end\n")),
+            std::vector<unsigned int>{1});
+  // a subsection without a name, and a name without a subsection
+  EXPECT_EQ(lines_of(error_of("subsection Bodies\n"
+                              "  set Names = b\n"
+                              "  subsection a\n"
+                              "    set Colour = red\n"
+                              "  end\n"
+                              "end\n")),
+            std::vector<unsigned int>{3});
+
+  const auto file =
+    ParameterFile::from_text(body("set density = 1"), {}, "m.prm");
+  InputProblems problems = file.problems();
+  Declarations declared(file.names("Bodies", problems));
+  file.parse(declared.prm, problems);
+  const auto errors_with = [&](const std::string &entry) {
+    InputProblems copy = problems;
+    file.check([&]() { throw InputError("Bodies/blade", entry, "a", "b"); },
+               copy);
+    return copy.errors().size();
+  };
+  // the misspelt entry is the one that was meant
+  EXPECT_EQ(errors_with("Density"), 1);
+  EXPECT_EQ(errors_with("Angle"), 2);
+  EXPECT_TRUE(problems.is_doubtful("Bodies/blade", "Density"));
+  EXPECT_FALSE(problems.is_doubtful("Bodies/blade", "Angle"));
+}
+
+TEST(InputProblems, ThrowsOneOrAll)
+{
+  InputProblems problems;
+  EXPECT_NO_THROW(problems.throw_all());
+  problems.attempt([]() {});
+  problems.attempt([]() { throw InputError("b"); });
+  try
+    {
+      problems.throw_all();
+      ADD_FAILURE();
+    }
+  catch (const InputErrors &)
+    {
+      ADD_FAILURE() << "one error is no list";
+    }
+  catch (const InputError &error)
+    {
+      EXPECT_STREQ(error.what(), "b");
+    }
+  problems.attempt([]() {
+    throw InputErrors({InputError("c"), InputError("d")});
+  });
+  problems.add(InputError("e"), 2);
+  problems.add(InputError("a"), 1);
+  EXPECT_EQ(message_of([&]() { problems.throw_all(); }), "b\nc\nd\na\ne");
+
+  for (unsigned int k = 0; k < 20000; ++k)
+    problems.add(InputError("more"), 3);
+  try
+    {
+      problems.throw_all();
+    }
+  catch (const InputErrors &errors)
+    {
+      EXPECT_EQ(errors.errors().size(), 51);
+      EXPECT_STREQ(errors.errors().back().what(), "and 19955 more problems");
+    }
+}
+
+TEST(InputProblems, DoubtsEntriesAndSections)
+{
+  InputProblems problems;
+  problems.doubt("a/b", "x");
+  problems.doubt("c");
+  EXPECT_TRUE(problems.is_doubtful("a/b", "x"));
+  EXPECT_FALSE(problems.is_doubtful("a/b", "y"));
+  EXPECT_FALSE(problems.is_doubtful("a/b"));
+  EXPECT_FALSE(problems.is_doubtful("a", "x"));
+  EXPECT_TRUE(problems.is_doubtful("c", "x"));
+  EXPECT_TRUE(problems.is_doubtful("c/d/e", "x"));
+  EXPECT_FALSE(problems.is_doubtful("cd", "x"));
+  EXPECT_FALSE(problems.is_doubtful("", "c"));
+}
+
+namespace
+{
+  /** Writes files into a folder of its own, which is removed at the end. */
+  class Folder
+  {
+  public:
+    Folder()
+    {
+      std::filesystem::create_directories(path / "inner");
+    }
+
+    ~Folder()
+    {
+      std::filesystem::remove_all(path);
+    }
+
+    void
+    write(const std::string &name, const std::string &text) const
+    {
+      std::ofstream(path / name) << text;
+    }
+
+    std::string
+    error(const std::string &name) const
+    {
+      return message_of([&]() {
+        const ParameterFile file(path / name);
+        Declarations declared(file.names("Bodies"));
+        file.parse(declared.prm);
+      });
+    }
+
+    const std::filesystem::path path = "parameter_file_test_folder";
+  };
+} // namespace
+
+TEST(ParameterFile, IncludesFiles)
+{
+  const Folder folder;
+  folder.write("m.prm",
+               "include inner/title.prm # relative to this file\n"
+               "subsection Bodies\n"
+               "  set Names = a, b\n"
+               "  subsection a\n"
+               "    include inner/steel.prm\n"
+               "  end\n"
+               "  subsection b\n"
+               "    include inner/steel.prm\n"
+               "    set Angle = 2\n"
+               "  end\n"
+               "end\n");
+  folder.write("inner/title.prm", "set Title = from \\\n a file\n");
+  folder.write("inner/steel.prm", "INCLUDE density.prm\n\nset Rigid = true\n");
+  folder.write("inner/density.prm", "set Density = 7850");
+  const ParameterFile file(folder.path / "m.prm");
+  Declarations declared(file.names("Bodies"));
+  file.parse(declared.prm);
+  EXPECT_EQ(declared.title, "from a file");
+  for (const auto &body : declared.bodies)
+    {
+      EXPECT_EQ(body.density, 7850);
+      EXPECT_TRUE(body.is_rigid);
+    }
+  EXPECT_EQ(declared.bodies[1].angle, 2);
+}
+
+TEST(ParameterFile, NamesIncludedFilesInErrors)
+{
+  const Folder folder;
+  const std::string in = folder.path.string() + "/";
+  folder.write("m.prm",
+               "subsection Bodies\n"
+               "  set Names = a\n"
+               "  subsection a\n"
+               "    set Density = 1\n"
+               "    include inner/body.prm\n"
+               "    set Angle = y\n"
+               "  end\n"
+               "end\n");
+  folder.write("inner/body.prm",
+               "# Density\n"
+               "set Density = 2\n\n"
+               "set Elements = \\\n\\\n x\n");
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "inner/body.prm:2: section 'Bodies/a', entry 'Density': found "
+              "the entry a second time (first in line 4 of " +
+              in + "m.prm); allowed: each entry once\n" + in +
+              "inner/body.prm:4: section 'Bodies/a', entry 'Elements': found "
+              "'x'; allowed: an integer >= 0\n" +
+              in +
+              "m.prm:6: section 'Bodies/a', entry 'Angle': found 'y'; allowed: "
+              "a number");
+  // later errors, too
+  const ParameterFile file(folder.path / "m.prm");
+  EXPECT_EQ(std::string(
+              file.locate(InputError("Bodies/a", "Elements", "a", "b")).what())
+              .rfind(in + "inner/body.prm:4: ", 0),
+            0);
+
+  // what a file opens, it closes, and nothing else
+  folder.write("inner/body.prm", "end\nsubsection b\n");
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "inner/body.prm:1: section 'Bodies/a', found 'end' without an "
+              "open subsection; allowed: one 'end' for each subsection\n" +
+              in +
+              "inner/body.prm:2: section 'Bodies/a/b', found no 'end' of the "
+              "subsection opened here; allowed: one 'end' for each subsection");
+  folder.write("inner/body.prm", std::string("set Angle = 1\n\0", 15));
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "inner/body.prm:2: found bytes that are not text; allowed: a "
+              "text file in UTF-8");
+}
+
+TEST(ParameterFile, RefusesWrongIncludes)
+{
+  const Folder folder;
+  const std::string in = folder.path.string() + "/";
+  folder.write("m.prm", "set Title = x\ninclude inner/a.prm\n");
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "m.prm:2: found 'include inner/a.prm': no such file; allowed: "
+              "the name of a text file, relative to the folder of this one");
+  folder.write("inner/a.prm", "include ../m.prm\n");
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "inner/a.prm:1: found 'include ../m.prm', which includes this "
+              "file; allowed: files that do not include each other");
+  folder.write("inner/a.prm", "include .\n");
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "inner/a.prm:1: found 'include .': a directory; allowed: the "
+              "name of a text file, relative to the folder of this one");
+
+  for (unsigned int k = 0; k < 20; ++k)
+    folder.write("inner/" + std::to_string(k) + ".prm",
+                 "include " + std::to_string(k + 1) + ".prm\n");
+  folder.write("m.prm", "include inner/0.prm\n");
+  EXPECT_EQ(folder.error("m.prm"),
+            in +
+              "inner/15.prm:1: found 'include 16.prm' in a file that is "
+              "included by 16 others in turn; allowed: at most 16");
+}
+
+TEST(ParameterFile, EndsWithHugeInput)
+{
+  // each one within a second, and with a message that fits on a page
+  std::string deep, many;
+  for (unsigned int k = 0; k < 100000; ++k)
+    {
+      deep += "subsection a\n";
+      many += "set a" + std::to_string(k) + " = 1\n";
+    }
+  EXPECT_EQ(error_of(deep).substr(0, 9), "m.prm:17:");
+  EXPECT_EQ(lines_of(error_of(many)).size(), 50);
+  const std::string error =
+    error_of(body("set Angle = " + std::string(5000000, '1')));
+  EXPECT_LT(error.size(), 2000);
+  EXPECT_NE(error.find("(5000000 characters)"), std::string::npos);
+  EXPECT_LT(error_of("set " + std::string(5000000, 'x') + " = 1").size(), 3000);
 }
 
 TEST(ParameterFile, ChecksNames)

@@ -286,7 +286,9 @@ TEST(ReducedStrainDamping, NothingForInvertedBodies)
         NodalVector x(X), force(X.size());
         x *= -1;
         NodalVector scratch(X.size());
-        const auto success = [&](const NodalVector &positions) {
+        // clang 14 captures no structured bindings by reference
+        const auto success = [&,
+                              measure = measure](const NodalVector &positions) {
           return damped_reduced_strain_force(example.body,
                                              measure,
                                              positions,

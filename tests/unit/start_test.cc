@@ -729,7 +729,7 @@ TEST(Modes, FilesOfAStaticRun)
   const std::filesystem::path directory = "start_test-results";
   std::filesystem::remove_all(directory);
   std::ostringstream stream;
-  run_model(model, directory, stream, stream, false);
+  run_model(model, {directory}, stream, stream);
 
   const auto lines = [&](const std::string &name) {
     std::ifstream file(directory / name);

@@ -22,6 +22,10 @@ namespace ACF
   std::string
   format_number(const double value);
 
+  /** "1 step", "2 steps" */
+  std::string
+  counted(const unsigned long n, const std::string &noun);
+
   /**
    * The line that shows how far a simulation is: simulated time, step size,
    * iterations and time left. On a terminal it is rewritten in place a few
@@ -34,8 +38,12 @@ namespace ACF
      * @param stream where to write
      * @param enabled false for a silent object
      * @param end_time simulated time at the end, s
+     * @param start_time where this run of the program begins, s
      */
-    Progress(std::ostream &stream, const bool enabled, const double end_time);
+    Progress(std::ostream &stream,
+             const bool enabled,
+             const double end_time,
+             const double start_time = 0);
 
     /** Ends the line, if one is shown. */
     ~Progress();
@@ -52,6 +60,7 @@ namespace ACF
     std::ostream &stream;
     const bool enabled;
     const double end_time;
+    const double start_time;
     const Clock::time_point start;
     Clock::time_point last_update;
     bool line_open = false;

@@ -4,12 +4,14 @@
 #ifndef acf_base_parameter_file_h
 #define acf_base_parameter_file_h
 
-#include <acf/base/exceptions.h>
+#include <acf/base/parameter_scanner.h>
 
 #include <deal.II/base/parameter_handler.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
+#include <unordered_map>
 #include <vector>
 
 namespace ACF
@@ -25,10 +27,23 @@ namespace ACF
    *     // declare the subsection of the body in prm
    *   file.parse(prm);
    * @endcode
+   * So the first wrong section ends the reading. The functions with
+   * InputProblems go on and collect all errors; they leave out what is likely
+   * to follow from others:
+   * @code
+   *   InputProblems problems = file.problems();
+   *   for (const std::string &name : file.names("Bodies", problems))
+   *     // declare the subsection of the body in prm
+   *   file.parse(prm, problems);
+   *   file.check([&]() { body.check(); }, problems);
+   *   problems.throw_all();
+   * @endcode
    *
    * The syntax is the one of dealii::ParameterHandler: <tt>set A = b</tt>,
-   * <tt>subsection A</tt>, <tt>end</tt>, comments from <tt>#</tt> on, and lines
-   * continued by a backslash at their end. The patterns, conversions and
+   * <tt>subsection A</tt>, <tt>end</tt>, comments from <tt>#</tt> on, lines
+   * continued by a backslash at their end, and <tt>include FILE</tt>, relative
+   * to the folder of the file with this line. An included file closes the
+   * subsections that it opens, and no others. The patterns, conversions and
    * actions of the handler decide about a value. Stricter than the handler,
    * this class rejects entries given twice, subsections opened twice, values
    * with braces that the pattern does not match (the handler takes them
@@ -47,8 +62,8 @@ namespace ACF
      * @param file the model file; messages name it as it is written here
      * @param overrides of the form "Section/Entry=value"; each takes the place
      *   of the file's entry
-     * @throws InputError if the file is no readable text or wrong in its form,
-     *   or an override is; the first problem in the order of the file
+     * @throws InputError if the file is no readable text or without entries, or
+     *   if its sections are not certain; other problems() wait for parse()
      */
     explicit ParameterFile(const std::filesystem::path &file,
                            const std::vector<std::string> &overrides = {});
@@ -70,15 +85,35 @@ namespace ACF
     std::vector<std::string>
     names(const std::string &section) const;
 
+    /** The names that can be used. */
+    std::vector<std::string>
+    names(const std::string &section, InputProblems &problems) const;
+
     /**
      * The second pass: set all entries of the file, then all overrides.
      * @param prm with all declarations, at its top level
-     * @throws InputError for unknown subsections and entries and for values
-     *   that do not match their pattern; the first problem in the order of the
-     *   file. The values of @p prm are then meaningless.
+     * @throws InputError for the problems() of the text, for unknown
+     *   subsections and entries and for values that do not match their pattern;
+     *   all in the order of the file. The values of @p prm are then
+     *   meaningless.
      */
     void
     parse(ParameterHandler &prm) const;
+
+    /** Sets what can be set. */
+    void
+    parse(ParameterHandler &prm, InputProblems &problems) const;
+
+    /** What is wrong with the text and the overrides by themselves. */
+    const InputProblems &
+    problems() const;
+
+    /**
+     * Calls a function that checks values, and adds what it throws of
+     * InputError, located; but not what is about doubtful entries.
+     */
+    void
+    check(const std::function<void()> &function, InputProblems &problems) const;
 
     /**
      * The same error, preceded by where its entry has got the value: file and
@@ -94,40 +129,51 @@ namespace ACF
     path() const;
 
   private:
-    /** An opened subsection or a set entry. */
-    struct Statement
-    {
-      /** Path of the section. */
-      std::string section;
-      /** Name of the entry; empty for the opening of a subsection. */
-      std::string entry;
-      std::string value;
-      /** Where the statement begins; zero for an override. */
-      unsigned int line;
-    };
-
-    /** Turns the text into statements. */
-    class Scanner;
+    using Statement = ParameterStatement;
 
     ParameterFile() = default;
 
+    /** Takes what a scanner has found. */
     void
-    read(const std::string &text, const std::vector<std::string> &overrides);
+    read(ParameterScanner &scanner, const std::vector<std::string> &overrides);
 
     void
     add_override(const std::string &text);
 
+    void
+    add_statement(const Statement &statement);
+
+    /** Names and subsections of a section must be the same. */
+    void
+    check_subsections(const std::string &section,
+                      const std::vector<std::string> &names,
+                      const Statement *const set,
+                      InputProblems &problems) const;
+
     /** The statement that has the last word; null if there is none. */
     const Statement *
     find(const std::string &section, const std::string &entry) const;
+
+    /** That of an entry, or if it is not set of its subsection; null if there
+     * is neither. */
+    const Statement *
+    find_place(const InputError &error) const;
 
     InputError
     located(const InputError &error, const Statement &statement) const;
 
     std::filesystem::path file;
 
+    /** As messages name them: the file and those that it includes. */
+    std::vector<std::string> files;
+
     /** In the order of the file, then the overrides. */
     std::vector<Statement> statements;
+
+    /** The last statement of each section and entry. */
+    std::unordered_map<std::string, std::size_t> last_statements;
+
+    InputProblems text_problems;
   };
 
   /**

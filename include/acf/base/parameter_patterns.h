@@ -21,9 +21,13 @@ namespace ACF
   allowed_values(const std::string &description, const bool plural = false);
 
   /**
-   * " (did you mean 'x'?)" for the candidate with the smallest edit distance,
-   * upper and lower case being equal; empty if none is similar.
+   * The candidate with the smallest edit distance, upper and lower case being
+   * equal; empty if none is similar.
    */
+  std::string
+  nearest(const std::string &word, const std::vector<std::string> &candidates);
+
+  /** " (did you mean 'x'?)" for the nearest() one; empty if there is none. */
   std::string
   suggestion(const std::string &word,
              const std::vector<std::string> &candidates);
@@ -36,7 +40,18 @@ namespace ACF
   bool
   strictly_matches(const std::string &value, const std::string &description);
 
-  /** The text between single quotation marks. */
+  /**
+   * Whether no number of a value is larger than 1e100 in size, so that products
+   * of some of them are numbers, too.
+   */
+  bool
+  is_moderate(const std::string &value, const std::string &description);
+
+  /** The first part of a text that is too long for a message. */
+  std::string
+  shorten(const std::string &text);
+
+  /** The text, shortened, between single quotation marks. */
   std::string
   in_quotes(const std::string &text);
 

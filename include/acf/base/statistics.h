@@ -11,6 +11,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /** Counters and times of a run; what a scene does not use stays zero. */
   struct Statistics
   {
@@ -89,8 +91,12 @@ namespace ACF
     unsigned long validity_checks = 0;
 
     /** Files and rows written. */
-    unsigned long vtu_files  = 0;
-    unsigned long probe_rows = 0;
+    unsigned long vtu_files   = 0;
+    unsigned long probe_rows  = 0;
+    unsigned long checkpoints = 0;
+
+    /** How often the run went on from a checkpoint. */
+    unsigned long restarts = 0;
 
     /** Entries and bytes of all cached factors. */
     std::size_t factor_entries = 0;
@@ -108,6 +114,13 @@ namespace ACF
 
     /** Wall time per phase, s. */
     std::map<std::string, double> wall_times;
+
+    /**
+     * Saves, or loads in addition to what has been counted since the start of
+     * the program. What is held in memory is not kept.
+     */
+    void
+    exchange(Archive &archive);
   };
 
 

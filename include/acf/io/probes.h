@@ -4,10 +4,9 @@
 #ifndef acf_io_probes_h
 #define acf_io_probes_h
 
+#include <acf/base/files.h>
 #include <acf/time/time_loop.h>
 
-#include <filesystem>
-#include <fstream>
 #include <memory>
 
 namespace ACF
@@ -68,6 +67,11 @@ namespace ACF
     /** The numbers; called with increasing times. */
     virtual std::vector<double>
     evaluate(const SystemState &state) = 0;
+
+    /** Saves or loads what it remembers of earlier times. */
+    virtual void
+    exchange(Archive & /*archive*/)
+    {}
   };
 
   /**
@@ -82,13 +86,13 @@ namespace ACF
   /**
    * Writes all probes to a file of comma-separated values, `probes.csv`: a
    * header "time [s],PROBE.QUANTITY [UNIT],..." and one line per observation,
-   * which is complete on the disk's side of the program when observe() returns.
+   * which is with the system when observe() returns (LogFile).
    */
   class ProbeOutput : public Observer
   {
   public:
     /**
-     * @throws SimulationError if the file cannot be written
+     * Writes nothing before the first observation.
      */
     ProbeOutput(const MultibodySystem &system,
                 const std::vector<ProbeParameters> &parameters,
@@ -96,16 +100,37 @@ namespace ACF
                 const std::filesystem::path &directory,
                 Statistics &statistics);
 
+    /** @throws SimulationError if the file cannot be written */
     void
     observe(const SystemState &state) override;
 
-  private:
-    void
-    write_line(const std::string &line);
+    std::string
+    name() const override
+    {
+      return "probes";
+    }
 
+    /**
+     * Saves or loads; what was written later than what is loaded is cut off. If
+     * there is no file, a new one begins.
+     * @throws InputError if the file is not the one that was saved
+     */
+    void
+    exchange(Archive &archive) override;
+
+  private:
     std::vector<std::unique_ptr<Probe>> probes;
-    std::filesystem::path file;
-    std::ofstream stream;
+    void
+    append(const std::string &text);
+
+    const std::filesystem::path file;
+    std::string header;
+
+    /** Null before something is written. */
+    std::unique_ptr<LogFile> log;
+
+    /** Sum (CRC-32) of what is written. */
+    unsigned long sum = 0;
     Statistics &statistics;
   };
 } // namespace ACF

@@ -95,7 +95,17 @@ namespace ACF
           const double time,
           const std::string &list);
 
+    /**
+     * Saves or loads the entries of the list; loaded ones count if the file is
+     * there, and the list is written.
+     */
+    void
+    exchange(Archive &archive, const std::string &list);
+
   private:
+    void
+    write_list(const std::string &list) const;
+
     const MultibodySystem &system;
     const std::filesystem::path directory;
 
@@ -138,6 +148,19 @@ namespace ACF
      */
     void
     observe(const SystemState &state) override;
+
+    std::string
+    name() const override
+    {
+      return "vtu";
+    }
+
+    /**
+     * Saves or loads; files that were written later are no entries of the list
+     * any more.
+     */
+    void
+    exchange(Archive &archive) override;
 
   private:
     const MultibodySystem &system;

@@ -6,6 +6,8 @@
 
 #include <acf/base/types.h>
 
+#include <deal.II/base/point.h>
+
 #include <map>
 #include <set>
 

@@ -18,6 +18,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /** What a model file says of the mechanical system. */
   struct SystemParameters
   {
@@ -53,6 +55,10 @@ namespace ACF
 
     /** Values of the laws of all force elements; angles are continuous. */
     Eigen::VectorXd law_values;
+
+    /** Saves or loads. */
+    void
+    exchange(Archive &archive);
   };
 
 

@@ -11,6 +11,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /**
    * Which nodes of a body are coupled: compressed rows of sorted node numbers,
    * the diagonal included. Structurally symmetric.
@@ -180,6 +182,10 @@ namespace ACF
 
     std::size_t
     memory_consumption() const;
+
+    /** Saves or loads the entries. */
+    void
+    exchange(Archive &archive);
 
   private:
     std::shared_ptr<const NodeGraph> node_graph;

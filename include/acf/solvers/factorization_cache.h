@@ -16,6 +16,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /**
    * The factorisation of a body's shifted matrix K with what joints and force
    * elements need of it, all in the body's frame and so independent of its
@@ -126,6 +128,14 @@ namespace ACF
     void
     restore_stiffness(const Body &body);
 
+    /**
+     * Saves or loads everything but the factors: those that were held count as
+     * held, and are factorised again when they are needed first.
+     * @param bodies all bodies that factors are held of
+     */
+    void
+    exchange(Archive &archive, const std::vector<Body> &bodies);
+
   private:
     /** Of a reference body, or of a body with a stiffness of its own. */
     using Key = std::tuple<const void *, double, double>;
@@ -133,14 +143,27 @@ namespace ACF
     template <typename Number>
     struct Entry
     {
+      /** Null if it was only loaded that there is one. */
       std::unique_ptr<JointedFactorization<Number>> factor;
 
       /** For which it was needed last. */
-      double step_size;
+      double step_size = 0;
+
+      std::size_t n_bytes = 0;
     };
 
     template <typename Number>
     using Factors = std::map<Key, Entry<Number>>;
+
+    /** What is kept of an entry. */
+    struct EntryRecord;
+
+    template <typename Number>
+    void
+    exchange(Archive &archive,
+             const std::string &name,
+             const std::vector<Body> &bodies,
+             Factors<Number> &factors);
 
     template <typename Number>
     JointedFactorization<Number> &

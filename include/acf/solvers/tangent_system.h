@@ -33,6 +33,13 @@ namespace ACF
     bool
     linearize(const SystemState &state, const double load_factor = 1);
 
+    /** The body because of which linearize() has returned false. */
+    unsigned int
+    inverted_body() const
+    {
+      return tangents.size();
+    }
+
     /** $y = K_T x$ */
     void
     apply_stiffness(SystemVector &y, const SystemVector &x) const;

@@ -8,6 +8,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /**
    * Chooses step sizes on the lattice $\tau_0 2^{k/2}$, k of any sign, so that
    * the estimated errors e of the steps are at most $r \tau$, with r the
@@ -77,6 +79,14 @@ namespace ACF
     {
       return rejections;
     }
+
+    /** Begins anew at a time, s. */
+    void
+    start_at(const double time);
+
+    /** Saves or loads; begins anew if the first step was another one. */
+    void
+    exchange(Archive &archive);
 
   private:
     double

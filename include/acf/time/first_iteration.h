@@ -8,6 +8,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /**
    * Whether the first iteration of a step was enough: what it leaves is
    * $\theta / (1 - \theta)\, |\Delta Z^1|$ with a contraction that was
@@ -33,6 +35,10 @@ namespace ACF
      * @param norms $|\Delta Z^k|$ of all iterations */
     void
     end_step(const std::vector<double> &norms);
+
+    /** Saves or loads. */
+    void
+    exchange(Archive &archive);
 
   private:
     double step_size     = 0;

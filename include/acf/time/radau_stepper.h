@@ -47,6 +47,11 @@ namespace ACF
     SystemState
     interpolate(const double time) const;
 
+    /** Saves or loads what steps leave, so that the next one does not notice.
+     */
+    void
+    exchange(Archive &archive);
+
   private:
     /**
      * Predicts the stages of the step (StagePredictor); those of the first step

@@ -89,12 +89,13 @@ namespace ACF
      * The exact derivatives at the stages.
      * @param exact the bodies for which the elastic force is linearised
      * exactly, see StageTangent
-     * @return false if a body is turned inside out
+     * @return false, and why, if a body is turned inside out
      */
     bool
     linearize(const std::vector<bool> &exact,
               const StageRotations &rotations,
-              StageTangent &tangent) const;
+              StageTangent &tangent,
+              std::string &failure) const;
 
     /** Increments Z, m. */
     StageVector increments;

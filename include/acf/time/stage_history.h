@@ -10,6 +10,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /** Root mean square of a nodal vector over the nodes of a body, divided by
    * the length of the body. */
   double
@@ -35,6 +37,9 @@ namespace ACF
 
       /** $\Lambda$ */
       StageConstraints multipliers;
+
+      void
+      exchange(Archive &archive);
     };
 
     /** Keeps at most two. */
@@ -42,6 +47,10 @@ namespace ACF
     push(const double step_size,
          const StageVector &increments,
          const StageConstraints &multipliers);
+
+    /** Saves or loads. */
+    void
+    exchange(Archive &archive);
 
     std::deque<Step> steps;
   };

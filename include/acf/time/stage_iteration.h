@@ -137,6 +137,10 @@ namespace ACF
       return cache.holds(step_size);
     }
 
+    /** Saves or loads what steps leave. */
+    void
+    exchange(Archive &archive);
+
   private:
     /** How exactly the iteration linearises the elastic forces. */
     enum class Linearization

@@ -56,6 +56,10 @@ namespace ACF
            const StageVector &increments,
            const StageConstraints &multipliers);
 
+    /** Saves or loads what steps leave. */
+    void
+    exchange(Archive &archive);
+
   private:
     static constexpr unsigned int max_terms   = 3;
     static constexpr unsigned int max_targets = 3;
@@ -86,6 +90,9 @@ namespace ACF
     {
       StageVector increments;
       StageConstraints multipliers;
+
+      void
+      exchange(Archive &archive);
     };
 
     /** $d_n$, $d_{n-1}$, ..., and their scalar products for each body and for

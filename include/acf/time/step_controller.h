@@ -8,6 +8,8 @@
 
 namespace ACF
 {
+  class Archive;
+
   /**
    * Chooses step sizes on the lattice $\tau_0 2^{-k}$ so that all multiples of
    * $\tau_0$ remain ends of steps: a failed step is halved; after two
@@ -44,13 +46,26 @@ namespace ACF
     bool
     halve();
 
+    /** Begins anew at a time, s. */
+    void
+    start_at(const double time);
+
+    /** Saves or loads; begins anew if the base step size was another one. */
+    void
+    exchange(Archive &archive);
+
   private:
-    double base_step_size;
-    unsigned int max_halvings;
-    unsigned int n_halvings  = 0;
+    static constexpr int finest = 30;
+
+    const double base_step_size;
+    const unsigned int max_halvings;
+    unsigned int n_halvings = 0;
+
+    /** Where the base steps begin, s. */
+    double start             = 0;
     std::uint64_t base_steps = 0;
 
-    /** Part of the current base step that is done, in $2^{-max\_halvings}$. */
+    /** Part of the current base step that is done, in $2^{-30}$. */
     std::uint64_t fraction = 0;
 
     /** Successful steps since the last change, and how many it takes. */

@@ -48,6 +48,9 @@ namespace ACF
     {
       double value = 0;
       double time  = 0;
+
+      void
+      exchange(Archive &archive);
     };
 
     /**
@@ -66,6 +69,15 @@ namespace ACF
      */
     void
     observe(const SystemState &state) override;
+
+    std::string
+    name() const override
+    {
+      return "validity";
+    }
+
+    void
+    exchange(Archive &archive) override;
 
     /** Names of the figures as in the model file, with units in statistics. */
     static const std::vector<std::string> &
@@ -89,6 +101,9 @@ namespace ACF
       std::vector<Maximum> maxima;
       bool has_left  = false;
       double left_at = 0;
+
+      void
+      exchange(Archive &archive);
     };
 
     void

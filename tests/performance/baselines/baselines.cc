@@ -19,6 +19,7 @@
 // on a small pendulum, and fails if they disagree.
 
 #include <acf/base/exceptions.h>
+#include <acf/run_report.h>
 #include <acf/simulation.h>
 
 #include <mpi.h>

@@ -24,7 +24,7 @@ namespace Baselines
           {
             observer->observe(state);
             do
-              observer->advance();
+              observer->advance(state.time);
             while (observer->interval() > 0 &&
                    observer->next_time(state.time) <= end);
           }
