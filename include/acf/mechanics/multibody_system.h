@@ -111,6 +111,7 @@ namespace ACF
    *     = p, \qquad \Phi(S x, t) = 0 \f]
    * (paper Eq. (29)). Joints and force elements see the bodies through the
    * values s = S x of markers only. Constant after construction.
+   * See theory (10.1).
    */
   class MultibodySystem
   {
@@ -273,6 +274,7 @@ namespace ACF
                   const Eigen::VectorXd &law_reference,
                   const double load_factor = 1) const;
 
+    /** Derivatives at the markers, see theory (12.2). */
     MarkerLinearization
     linearize(const double t,
               const Eigen::VectorXd &s,
@@ -295,15 +297,23 @@ namespace ACF
               NodalVector &force,
               const double load_factor = 1) const;
 
-    /** Gravity's potential is zero at the origin of the world. */
+    /**
+     * Gravity's potential is zero at the origin of the world. See theory
+     * (18.2).
+     */
     SystemEnergy
     energy(const SystemState &state) const;
 
-    /** Linear momentum, kg m/s. */
+    /**
+     * Linear momentum, kg m/s. See theory (18.2).
+     */
     Vector3
     momentum(const SystemState &state) const;
 
-    /** Angular momentum about the origin of the world, kg m^2/s. */
+    /**
+     * Angular momentum about the origin of the world, kg m^2/s. See theory
+     * (18.2).
+     */
     Vector3
     angular_momentum(const SystemState &state) const;
 
