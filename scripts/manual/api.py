@@ -17,7 +17,7 @@ DOXYFILE = "doc/Doxyfile"
 FORMULA = re.compile(r"\\\((.+?)\\\)|\\\[(.+?)\\\]", re.S)
 
 # References of doc comments to formulas of the manual
-REFERENCE = re.compile(r"\btheory[\s*]+\((\d+\.\d+)\)")
+REFERENCE = re.compile(r"\b[Tt]heory[\s*]+\((\d+\.\d+)\)")
 
 
 class Api:
@@ -107,7 +107,7 @@ def convert_formulas(folder):
                       r"|<script[^>]*MathJax[^>]*></script>\n?",
                       "", text, flags=re.S)
         text = REFERENCE.sub(
-            r'<a href="../doc/theory.html#eq-\1">theory (\1)</a>', text)
+            r'<a href="../doc/theory.html#eq-\1">\g<0></a>', text)
         file.write_text(text)
     return []
 

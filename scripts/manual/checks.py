@@ -84,6 +84,11 @@ def check_formulas(top, all_pages, api):
                  f"({numbers[k - 1]})"
                  for k in range(1, len(order)) if order[k] <= order[k - 1]]
 
+    for name, page in all_pages.items():
+        if any("$$" in e["c"] for e in pages.walk(page.blocks)
+               if e["t"] == "Str"):
+            problems.append(f"{name}: a formula between $$ is not complete")
+
     # references
     for number in IN_PARENTHESES.findall(pages.plain(theory.blocks)):
         if number not in numbers:
