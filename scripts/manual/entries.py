@@ -129,6 +129,18 @@ def is_entry(word, exist):
             any(path.startswith(f"{general}/") for path in exist))
 
 
+def check_options(help_text, page):
+    """Problems: options without documentation, and names without option."""
+    exist = set(re.findall(r"^  (--[a-z-]+)", help_text, re.M))
+    documented = {code.split()[0] for _, head, rows in page.tables()
+                  if head[:1] == ["option"]
+                  for row in rows for code in pages.codes(row[0])} - {"--"}
+    return [f"{page.name}: the option '{option}' of the program is not in the "
+            "table of options" for option in sorted(exist - documented)] + [
+        f"{page.name}: the table of options names '{option}', which the "
+        "program does not have" for option in sorted(documented - exist)]
+
+
 def reference(entries):
     """The reference of all entries, in Markdown."""
     text = ["# All entries", "",

@@ -55,6 +55,12 @@ formula.
 |---|---|---|---|
 | `Interval` | 0 | s | between files |
 
+| option | meaning |
+|---|---|
+| `--help`, `--quiet` | print, and not |
+| `--set 'Section/Entry=value'` | an entry |
+| `--` | end |
+
 An example:
 
     set Title = A body
@@ -94,6 +100,13 @@ namespace ACF
 }
 """,
     "program": """#!/bin/sh
+if [ "$1" = --help ]; then
+  echo "Options:"
+  echo "  --help   print this text"
+  echo "  --set 'Section/Entry=value'   set"
+  echo "  --quiet  print nothing"
+  exit
+fi
 cat <<'END'
 # Listing of Parameters
 # ---------------------
@@ -162,6 +175,10 @@ BROKEN = [
      "names the entry 'Bodies/ball/Weight'"),
     ("doc/README.md", "`Output/Interval`", "`Output/Step`",
      "names the entry 'Output/Step'"),
+    ("doc/model-file.md", "`--help`, `--quiet`", "`--help`",
+     "the option '--quiet' of the program is not in the table"),
+    ("doc/model-file.md", "`--quiet`", "`--quiet`, `--loud`",
+     "the table of options names '--loud'"),
     ("doc/theory.md", "as (1.1)", "as (2.1)", "there is no formula (2.1)"),
     ("doc/README.md", "Theory (1.1)", "Theory (1.3)",
      "doc/README.md: there is no formula (1.3)"),
