@@ -292,7 +292,7 @@ namespace ACF
     /**
      * Adds $-S^T D^T \lambda$, the forces of all joints on the nodes of a
      * body. Their sum over the nodes of a surface is the force of the joint on
-     * it; moments are pairs of such forces.
+     * it; moments are pairs of such forces. See theory (10.3).
      */
     void
     add_joint_forces(const unsigned int body,
