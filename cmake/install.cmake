@@ -20,6 +20,8 @@ install(FILES README.md CHANGELOG.md CITATION.cff
 install(DIRECTORY doc
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
   PATTERN completion EXCLUDE
+  PATTERN Doxyfile EXCLUDE
+  PATTERN "*.dox" EXCLUDE
   PATTERN "*.1.in" EXCLUDE)
 # Debian's packages refer to the licence on the system instead.
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
