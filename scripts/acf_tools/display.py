@@ -4,6 +4,7 @@
 
 import atexit
 import ctypes
+import functools
 import os
 import shutil
 import subprocess
@@ -11,10 +12,12 @@ import subprocess
 from acf_tools.command_line import RunError
 
 
+@functools.cache
 def open_display():
     """Starts an X server without a screen (Xvfb), which ends with this process.
 
-    Without Xvfb the display that the variable DISPLAY names is used.
+    Without Xvfb the display that the variable DISPLAY names is used. Does nothing
+    when it is called again.
     """
     if shutil.which("Xvfb"):
         reading, writing = os.pipe()

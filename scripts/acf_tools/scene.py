@@ -200,7 +200,6 @@ class Scene:
         self.range = self.choose_range(low, high)
         self.factor, self.unit = with_prefix(max(map(abs, self.range)), self.field.unit)
         self.choose_camera(np.concatenate(corners))
-        self.window = None
 
     def check(self, snapshot, file):
         if self.options.magnification != 1 and not snapshot.arrays(False).get("displacement"):
@@ -420,8 +419,7 @@ class Scene:
 
     def draw(self, files, caption, picture):
         """Draws the given files into one picture."""
-        if self.window is None:
-            display.open_display()
+        display.open_display()
         width, height = self.options.size
         bar_height = 75 * self.scale() / height
 
@@ -477,7 +475,6 @@ class Scene:
         writer.Write()
         if errors:
             raise OSError(f"{picture}: the picture cannot be written")
-        self.window = window
 
 
 def parse_direction(text):
