@@ -25,10 +25,24 @@ def report(text):
 
 
 class ArgumentParser(argparse.ArgumentParser):
-    """argparse's, with errors of one line and without abbreviated options."""
+    """argparse's, with errors of one line and without abbreviated options.
+
+    Values may begin with a minus: --view -x.
+    """
 
     def __init__(self, **keywords):
         super().__init__(allow_abbrev=False, **keywords)
+
+    def parse_args(self, arguments=None):
+        joined = []
+        for argument in sys.argv[1:] if arguments is None else arguments:
+            action = self._option_string_actions.get(joined[-1]) if joined else None
+            if action and action.nargs is None and joined[-1].startswith("--") \
+                    and argument[:1] == "-" != argument[1:2]:
+                joined[-1] += "=" + argument
+            else:
+                joined.append(argument)
+        return super().parse_args(joined)
 
     def error(self, message):
         report(message)

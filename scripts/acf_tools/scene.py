@@ -28,6 +28,19 @@ CATEGORIES = (0x4E79A7, 0xF28E2B, 0x59A14F, 0xE15759, 0x76B7B2, 0xEDC948, 0xB07A
 LARGEST_LEGEND = 8
 
 
+# errors of VTK are raised as exceptions here
+messages = vtk.vtkStringOutputWindow()
+vtk.vtkOutputWindow.SetInstance(messages)
+vtk.vtkLogger.SetStderrVerbosity(vtk.vtkLogger.VERBOSITY_OFF)
+
+
+def observe_errors(thing):
+    """A list that gets an entry for each error of an object of VTK."""
+    errors = []
+    thing.AddObserver("ErrorEvent", lambda *_: errors.append(True))
+    return errors
+
+
 def rgb(colour):
     return tuple((colour >> shift & 255) / 255 for shift in (16, 8, 0))
 
@@ -53,9 +66,8 @@ class Snapshot:
 
     def __init__(self, file, magnification):
         reader = vtk.vtkXMLUnstructuredGridReader()
-        errors = []
-        reader.AddObserver("ErrorEvent", lambda *_: errors.append(True))
         reader.SetFileName(str(file))
+        errors = observe_errors(reader)
         reader.Update()
         self.grid = reader.GetOutput()
         if errors or not self.grid.GetNumberOfPoints():
@@ -469,9 +481,7 @@ class Scene:
         writer.SetCompressionLevel(9)
         writer.SetFileName(str(picture))
         writer.SetInputConnection(image.GetOutputPort())
-        # VTK writes messages of its own, but no exception
-        errors = []
-        writer.AddObserver("ErrorEvent", lambda *_: errors.append(True))
+        errors = observe_errors(writer)
         writer.Write()
         if errors:
             raise OSError(f"{picture}: the picture cannot be written")
