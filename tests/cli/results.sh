@@ -101,7 +101,7 @@ subsection Time integration
 end
 subsection Output
   set VTU interval = 0.05
-  set VTU stress = true
+  set VTU fields = velocity, von Mises stress, peak von Mises stress, stress, strain, joint forces
 end
 subsection Validity
   set Strain = 1e-5
@@ -171,7 +171,12 @@ check 'the film does not move' less 0.005 "$(difference frames/film-000000.png f
 mkdir empty
 tool_error 2 'there is no such file' render nowhere
 tool_error 2 'has no solution.pvd' render empty
-tool_error 2 'allowed, as these are in the files: body, displacement, velocity' \
+for field in peak_von_mises_stress largest_von_mises_stress stress:xx cell_stress:xz strain joint_force; do
+  rm -f field.png
+  tool 0 render beam-results -o field.png --size 200x150 --field $field
+  picture field.png 'share > 0.05 and colours > 5'
+done
+tool_error 2 'allowed, as these are in the files: body, cell_stress, displacement, joint_force' \
   render beam-results --field temperature
 tool_error 2 "found component 'xx'; allowed for velocity: x, y, z" render beam-results --field velocity:xx
 tool_error 2 "--size: found '10x10'" render beam-results --size 10x10
