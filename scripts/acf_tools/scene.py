@@ -20,8 +20,8 @@ HEXAHEDRON_EDGES = ((0, 8, 1), (1, 9, 2), (2, 10, 3), (3, 11, 0), (4, 12, 5), (5
                     (6, 14, 7), (7, 15, 4), (0, 16, 4), (1, 17, 5), (2, 18, 6), (3, 19, 7))
 CELL_EDGES = {24: (10, TETRAHEDRON_EDGES), 72: (27, HEXAHEDRON_EDGES)}
 
-# viridis (S. van der Walt, N. Smith) at nine equal distances
-SEQUENTIAL = (0x440154, 0x472D7B, 0x3B528B, 0x2C728E, 0x21918C, 0x28AE80, 0x5EC962, 0xADDC30,
+# viridis (S. van der Walt, N. Smith) without its darkest 15 %, at nine equal distances
+SEQUENTIAL = (0x463480, 0x3A538B, 0x2E6F8E, 0x23898E, 0x1FA287, 0x3BBB75, 0x73D056, 0xB8DE29,
               0xFDE725)
 DIVERGING = (0x2166AC, 0x67A9CF, 0xD1E5F0, 0xF7F7F7, 0xFDDBC7, 0xEF8A62, 0xB2182B)
 CATEGORIES = (0x4E79A7, 0xF28E2B, 0x59A14F, 0xE15759, 0x76B7B2, 0xEDC948, 0xB07AA1, 0x9C755F)
