@@ -366,7 +366,9 @@ class Scene:
         mapper.SelectColorArray("shown")
         mapper.SetLookupTable(colours)
         mapper.UseLookupTableScalarRangeOn()
+        # behind the edges, which lie in the surface
         mapper.SetResolveCoincidentTopologyToPolygonOffset()
+        mapper.SetRelativeCoincidentTopologyPolygonOffsetParameters(4, 40)
         surface = vtk.vtkActor()
         surface.SetMapper(mapper)
         self.set_material(surface)

@@ -235,6 +235,16 @@ check 'a page without pictures' eval '/usr/bin/python3 well_formed.py report.htm
 check 'pictures from nowhere' [ -z "$(grep 'data:image/png' contents)" ]
 expect_text contents 'a page without pictures' 'None in the files of the run' 'no row per step'
 
+# Modes of the free block, of which six are rigid.
+expect_status 0 --threads 1 --quiet --output-directory modes --set 'Output/VTU interval=0' \
+  --set 'Modes/Number=7' --set 'Bodies/block/Angular velocity=0,0,0' flight.prm
+tool 0 render modes/modes.pvd -o mode.png --size 200x150
+picture mode.png 'share > 0.02 and colours > 5'
+tool 0 report modes
+check 'a page with modes' eval '/usr/bin/python3 well_formed.py report.html >contents'
+check "modes with pictures: $(grep -c 'data:image/png' contents)" \
+  [ "$(grep 'data:image/png' contents)" = 'data:image/png mode 7, displacement' ]
+
 tool_error 2 'there is no such folder' report nowhere
 tool_error 2 'the folder has no results of acf-dealii' report empty
 tool_error 2 "--pictures: found '1.5'" report beam-results --pictures 1.5
