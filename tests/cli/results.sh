@@ -229,9 +229,10 @@ last=$(tail -n 1 beam-results/probes.csv | awk -F, '{ printf "%.6g", $4 }')
 expect_text contents 'the last value of tip.z' "text: $last"
 
 expect_status 0 --threads 1 --quiet --output-directory plain --set 'Output/VTU interval=0' \
-  --set 'Output/Probe interval=0.05' --set 'Validity/Action=ignore' beam.prm
+  --set 'Output/Probe interval=0.05' --set 'Validity/Action=ignore' --set 'Bodies/beam/Cut=2 along x' beam.prm
 tool 0 report plain
 check 'a page without pictures' eval '/usr/bin/python3 well_formed.py report.html >contents'
+check 'parts and cells of the beam' grep -q '^<tr><td>beam</td>.*<td class="number">2</td><td class="number">4</td>' report.html
 check 'pictures from nowhere' [ -z "$(grep 'data:image/png' contents)" ]
 expect_text contents 'a page without pictures' 'None in the files of the run' 'no row per step'
 
