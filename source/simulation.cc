@@ -4,6 +4,7 @@
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/base/files.h>
+#include <acf/inspection.h>
 #include <acf/io/checkpoint.h>
 #include <acf/io/mode_output.h>
 #include <acf/io/probes.h>
@@ -338,6 +339,7 @@ namespace ACF
         case CommandLine::Action::print_parameters:
           stream << default_model_file();
           return;
+        case CommandLine::Action::inspect:
         case CommandLine::Action::validate:
         case CommandLine::Action::run:
           break;
@@ -345,6 +347,11 @@ namespace ACF
 
     if (command_line.n_threads > 0)
       MultithreadInfo::set_thread_limit(command_line.n_threads);
+    if (command_line.action == CommandLine::Action::inspect)
+      {
+        inspect(command_line, stream, warnings);
+        return;
+      }
 
     const ParameterFile file(command_line.model, command_line.overrides);
     const Model model = read_model(file);
