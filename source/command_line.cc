@@ -28,6 +28,7 @@ namespace ACF
         {"--version", "", "print the version"},
         {"--print-parameters", "", "print all entries with their defaults"},
         {"--validate", "", "read and check the model, run nothing"},
+        {"--estimate", "", "show what a run would need, run nothing"},
         {"--inspect", "PART", "show what a mesh or a geometry contains"},
         {"--scale", "FACTOR", "of the coordinates of the part"},
         {"--density", "DENSITY", "of the part, kg/m^3, for its mass"},
@@ -99,6 +100,8 @@ namespace ACF
         result.action = Action::print_parameters;
       else if (option.name == "--validate")
         result.action = Action::validate;
+      else if (option.name == "--estimate")
+        result.action = Action::estimate;
       else if (option.name == "--inspect")
         {
           result.action = Action::inspect;
@@ -185,9 +188,10 @@ namespace ACF
                    "one of them");
       };
       exclude({"--restart"}, {"--overwrite"});
-      exclude({"--restart"}, {"--validate", "--inspect"});
-      exclude({"--overwrite"}, {"--validate"});
-      exclude({"--validate", "--set"}, {"--inspect"});
+      exclude({"--restart"}, {"--validate", "--estimate", "--inspect"});
+      exclude({"--overwrite"}, {"--validate", "--estimate"});
+      exclude({"--validate", "--estimate", "--set"}, {"--inspect"});
+      exclude({"--validate"}, {"--estimate"});
       for (const std::string name : {"--scale", "--density", "--mesh-size"})
         if (has(name) && !has("--inspect"))
           fail(name + " without --inspect", "it with --inspect PART");
@@ -224,7 +228,8 @@ namespace ACF
     check_actions(seen, arguments.size());
     check_combination(seen);
     using Action = CommandLine::Action;
-    if (result.action == Action::run || result.action == Action::validate)
+    if (result.action == Action::run || result.action == Action::validate ||
+        result.action == Action::estimate)
       {
         check_models(models);
         result.model = models[0];

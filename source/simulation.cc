@@ -4,6 +4,7 @@
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/base/files.h>
+#include <acf/estimate.h>
 #include <acf/inspection.h>
 #include <acf/io/checkpoint.h>
 #include <acf/io/mode_output.h>
@@ -19,6 +20,7 @@
 
 #include <deal.II/base/multithread_info.h>
 
+#include <chrono>
 #include <ostream>
 #include <sstream>
 
@@ -341,6 +343,7 @@ namespace ACF
           return;
         case CommandLine::Action::inspect:
         case CommandLine::Action::validate:
+        case CommandLine::Action::estimate:
         case CommandLine::Action::run:
           break;
       }
@@ -375,7 +378,10 @@ namespace ACF
           }
         else
           {
+            const auto start = std::chrono::steady_clock::now();
             const MultibodySystem system(model.system, model.directory);
+            const std::chrono::duration<double> assembly_time =
+              std::chrono::steady_clock::now() - start;
             for (const ProbeParameters &probe : model.probes)
               make_probe(probe, system);
             check_number_of_modes(system, model.modes.number);
@@ -385,8 +391,12 @@ namespace ACF
             if (!command_line.quiet)
               {
                 describe_bodies(system, stream);
-                stream << log.str() << command_line.model.string()
-                       << " is valid." << std::endl;
+                stream << log.str();
+                if (command_line.action == CommandLine::Action::estimate)
+                  estimate_run(model, system, assembly_time.count(), stream);
+                else
+                  stream << command_line.model.string() << " is valid."
+                         << std::endl;
               }
           }
       }

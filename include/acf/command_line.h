@@ -20,6 +20,8 @@ namespace ACF
       run,
       /** Read and check the model only. */
       validate,
+      /** Show what a run would need. */
+      estimate,
       /** Show what a mesh or a geometry contains. */
       inspect,
       /** Print a documented file of the defaults. */
@@ -30,7 +32,8 @@ namespace ACF
 
     Action action = Action::run;
 
-    /** The model file; empty unless the action is run or validate. */
+    /** The model file; empty unless the action is run, validate or estimate.
+     */
     std::filesystem::path model;
 
     /** The file of a mesh or a geometry to inspect. */

@@ -76,6 +76,24 @@ TEST(CommandLine, ReadsAllOptions)
   EXPECT_TRUE(result.quiet);
 }
 
+TEST(CommandLine, ReadsEstimates)
+{
+  const CommandLine result = parse_command_line({"--estimate", "m.prm"});
+  EXPECT_EQ(result.action, Action::estimate);
+  EXPECT_EQ(result.model, "m.prm");
+  const auto error = [](const std::string &options) {
+    return "command line: found " + options + "; allowed: one of them";
+  };
+  EXPECT_EQ(error_of({"--estimate", "--validate", "m.prm"}),
+            error("--validate with --estimate"));
+  EXPECT_EQ(error_of({"--restart=a", "--estimate", "m.prm"}),
+            error("--restart with --estimate"));
+  EXPECT_EQ(error_of({"--overwrite", "--estimate", "m.prm"}),
+            error("--overwrite with --estimate"));
+  EXPECT_EQ(error_of({"--inspect=a", "--estimate"}),
+            error("--estimate with --inspect"));
+}
+
 TEST(CommandLine, ReadsOptionsOfInspections)
 {
   const CommandLine part = parse_command_line({"--inspect", "a.step"});
@@ -161,8 +179,9 @@ TEST(CommandLine, WantsOneModel)
 TEST(CommandLine, RejectsUnknownOptions)
 {
   const std::string allowed =
-    "; allowed: --help, --version, --print-parameters, --validate, --inspect, "
-    "--scale, --density, --mesh-size, --set, --output-directory, --restart, "
+    "; allowed: --help, --version, --print-parameters, --validate, --estimate, "
+    "--inspect, --scale, --density, --mesh-size, --set, --output-directory, "
+    "--restart, "
     "--overwrite, --threads, --quiet";
   EXPECT_EQ(error_of({"m.prm", "--thread", "2"}),
             "command line: found the unknown option '--thread'" + allowed +
