@@ -23,13 +23,22 @@ namespace ACF
 {
   namespace
   {
-    // What runs of the project's models needed, doc/performance.md: iterations
-    // of a step, and how much longer it took than reading at the streaming
-    // bandwidth and multiplying at the speed of large products.
-    constexpr double n_iterations     = 3;
-    constexpr double solve_factor     = 1;
-    constexpr double operator_factor  = 1;
-    constexpr double operation_factor = 1;
+    // Fitted to runs of the models in prm (doc/model-file.md): iterations of a
+    // step, and work in bytes that the processor reads from its caches in the
+    // same time.
+    constexpr double n_iterations     = 1.2;
+    constexpr double solve_work       = 3;     // per byte that a solve reads
+    constexpr double unknown_work     = 1.1e4; // per unknown and iteration
+    constexpr double constraint_work  = 3e5;   // per constraint and iteration
+    constexpr double integration_work = 1.9e3; // per node of a cell,
+                                               // integration point and stage
+    constexpr double entry_work = 3.8e3; // per entry that is factorised
+
+    // The stack of fronts is copied when it grows.
+    constexpr double front_copies = 2;
+
+    // What fits into a cache of each processor, bytes.
+    constexpr std::size_t cached = 1 << 18;
 
     // Nodal vectors of a run: states, stages, increments and their history.
     constexpr double n_vectors = 40;
@@ -174,6 +183,27 @@ namespace ACF
 
 
 
+    // Of an iteration but for solves and operators, see the constants.
+    double
+    iteration_work(const MultibodySystem &system, const unsigned int n_stages)
+    {
+      double work = unknown_work * number_of_unknowns(system) +
+                    constraint_work * system.n_constraints();
+      for (const Body &body : system.bodies())
+        if (body.strain_measure() == StrainMeasure::green_lagrange)
+          {
+            const BodyDiscretization &space = body.discretization();
+            const BodyMesh &mesh            = space.mesh();
+            work += integration_work * n_stages *
+                    mesh.triangulation().n_active_cells() *
+                    space.scalar_element().n_dofs_per_cell() *
+                    mesh.cell_quadrature(mesh.is_simplex() ? 2 : 4).size();
+          }
+      return work;
+    }
+
+
+
     void
     print(const std::string &name,
           const std::string &value,
@@ -227,13 +257,14 @@ namespace ACF
       print("joint columns", bytes(total.column_bytes), stream);
       const double vectors =
         n_vectors * sizeof(double) * number_of_unknowns(system);
+      const double fronts = front_copies * total.work_bytes;
       const double memory = 1. * peak_memory() + total.n_bytes +
-                            total.column_bytes + total.work_bytes + vectors;
+                            total.column_bytes + fronts + vectors;
       print("peak memory",
             "about " + format_bytes(memory) + ": now " +
               format_bytes(peak_memory()) + ", factors and columns " +
               format_bytes(total.n_bytes + total.column_bytes) +
-              ", factorising " + format_bytes(total.work_bytes) + ", vectors " +
+              ", factorising " + format_bytes(fronts) + ", vectors " +
               format_bytes(vectors) + "; this machine has " +
               format_bytes(physical_memory()),
             stream);
@@ -258,17 +289,24 @@ namespace ACF
     stream << "Estimate of the run, nothing is factorised:\n";
     print_sizes(model, system, factors, total, stream);
 
-    const double factor_speed = streaming_bandwidth(of_steps.n_bytes);
+    const double n_threads = MultithreadInfo::n_threads();
+    const double core_speed =
+      streaming_bandwidth(static_cast<std::size_t>(n_threads * cached));
+    const double factor_speed =
+      std::min(core_speed, streaming_bandwidth(of_steps.n_bytes));
     const double operator_speed =
-      streaming_bandwidth(static_cast<std::size_t>(operator_bytes(system)));
+      std::min(core_speed,
+               streaming_bandwidth(
+                 static_cast<std::size_t>(operator_bytes(system))));
     const double product_speed = matrix_product_speed();
-    const double factorisation =
-      operation_factor * total.n_operations / product_speed +
-      solve_factor * total.setup_bytes / factor_speed;
+    const double solve_time    = 1 / factor_speed + solve_work / core_speed;
+    const double factorisation = total.n_operations / product_speed +
+                                 entry_work * total.n_entries / core_speed +
+                                 total.setup_bytes * solve_time;
     const double step =
-      n_iterations *
-      (solve_factor * of_steps.iteration_bytes / factor_speed +
-       operator_factor * operator_bytes(system) / operator_speed);
+      n_iterations * (of_steps.iteration_bytes * solve_time +
+                      operator_bytes(system) / operator_speed +
+                      iteration_work(system, time.n_stages) / core_speed);
     print("assembly", format_duration(assembly_time) + " (measured)", stream);
     print("factorisations", "about " + format_duration(factorisation), stream);
     if (time.end_time > 0)
@@ -296,13 +334,12 @@ namespace ACF
                 ", without output",
               stream);
       }
-    stream << "Based on " << MultithreadInfo::n_threads()
-           << " threads reading factors with " << format_bytes(factor_speed)
-           << "/s and matrices with " << format_bytes(operator_speed)
-           << "/s, products of matrices with " << std::setprecision(3)
-           << 1e-9 * product_speed
-           << " Gflop/s (measured now), an iteration reading each factor twice "
-              "and mass and stiffness once\n"
+    stream << "Based on reading factors with " << format_bytes(factor_speed)
+           << "/s, matrices with " << format_bytes(operator_speed)
+           << "/s and caches with " << format_bytes(core_speed)
+           << "/s, and products of matrices with " << std::setprecision(3)
+           << 1e-9 * product_speed << " Gflop/s, measured now with "
+           << counted(MultithreadInfo::n_threads(), "thread") << ".\n"
            << std::flush;
   }
 } // namespace ACF

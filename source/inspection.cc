@@ -53,12 +53,18 @@ namespace ACF
     InputError
     command_line_error(const InputError &error)
     {
-      const std::string message = error.what();
-      const std::size_t begin   = message.find("found ");
+      std::string message     = error.what();
+      const std::size_t begin = message.find("found ");
+      if (begin != std::string::npos)
+        message.erase(0, begin);
+      const std::string shapes = "box, cylinder, or ";
+      const std::size_t shape  = message.find("; allowed: " + shapes);
+      if (shape != std::string::npos)
+        message.erase(message.find(shapes, shape), shapes.size());
       return InputError(
         std::string("command line: ") +
         (error.entry == "Mesh size" ? "--mesh-size" : "--inspect") + ": " +
-        (begin == std::string::npos ? message : message.substr(begin)));
+        message);
     }
 
 
@@ -66,12 +72,20 @@ namespace ACF
     void
     check_file(const CommandLine &command_line)
     {
-      const MeshFileKind kind = mesh_file_kind(command_line.part);
-      const std::string name  = "'" + command_line.part.string() + "'";
-      if (kind == MeshFileKind::unknown)
-        throw InputError("command line: --inspect: found " + name +
-                         "; allowed: a file .msh, .geo, .step, .stp, .igs, "
-                         ".iges or .brep");
+      const std::string name = "'" + command_line.part.string() + "'";
+      MeshParameters parameters;
+      parameters.mesh      = command_line.part.string();
+      parameters.mesh_size = command_line.mesh_size;
+      if (mesh_file_kind(command_line.part) == MeshFileKind::unknown)
+        parameters.mesh = "./" + parameters.mesh; // no built-in shape
+      try
+        {
+          parameters.check("");
+        }
+      catch (const InputError &error)
+        {
+          throw command_line_error(error);
+        }
       try
         {
           require_regular_file(command_line.part);
@@ -82,11 +96,6 @@ namespace ACF
                            error.what() +
                            "; allowed: the name of a file that exists");
         }
-      if (kind == MeshFileKind::mesh && command_line.mesh_size > 0)
-        throw InputError("command line: found --mesh-size with the mesh " +
-                         name +
-                         "; allowed: it with geometries only, which "
-                         "gmsh meshes");
     }
 
 

@@ -134,7 +134,7 @@ expect_part_error() {
 mkdir empty
 expect_part_error 2 "--inspect: found 'nowhere.step': no such file; allowed: the name of a file that exists" \
   --inspect nowhere.step
-expect_part_error 2 "--inspect: found 'plate.stl'; allowed: a file .msh, .geo" --inspect plate.stl
+expect_part_error 2 "--inspect: found './plate.stl'; allowed: a file .msh" --inspect plate.stl
 expect_part_error 2 "--inspect: found '$top/tests/data/flat_square.geo': a mesh without volume elements" \
   --inspect "$top/tests/data/flat_square.geo" --output-directory empty
 expect_part_error 2 "--mesh-size: found '1e-09', which makes" --inspect round.geo --mesh-size 1e-9
@@ -148,8 +148,9 @@ expect_part_error 2 "found 'plate.prm' beside --inspect" --inspect round.geo pla
 expect_part_error 2 'found --inspect without a value; allowed: --inspect PART' --inspect --quiet
 printf '$MeshFormat\n2.2 0 8\n$EndMeshFormat\n' >cut.msh
 expect_part_error 2 "--inspect: found 'cut.msh'" --inspect cut.msh
-expect_part_error 2 "found --mesh-size with the mesh 'cut.msh'; allowed: it with geometries only" \
-  --inspect cut.msh --mesh-size 1
+expect_part_error 2 '--mesh-size: found 0.5; allowed: no value for Mesh = cut.msh, only geometries are meshed' \
+  --inspect cut.msh --mesh-size 0.5
+expect_part_error 2 "--inspect: found './box'; allowed: a file .msh" --inspect box
 expect_part_error 1 'round.geo' --inspect round.geo --output-directory round.geo
 check 'errors leave files' [ -z "$(ls empty)" ]
 
