@@ -32,7 +32,7 @@ namespace ACF
     constexpr double constraint_work  = 3e5;   // per constraint and iteration
     constexpr double integration_work = 1.9e3; // per node of a cell,
                                                // integration point and stage
-    constexpr double entry_work = 3.8e3; // per entry that is factorised
+    constexpr double entry_work = 3.8e3;       // per entry that is factorised
 
     // The stack of fronts is copied when it grows.
     constexpr double front_copies = 2;
