@@ -88,6 +88,30 @@ namespace ACF
 
 
 
+  /** The shifted matrix $\sigma m \otimes I_3 + A$ of a body that a stage
+   * solver factorises. */
+  struct StageMatrix
+  {
+    /** $\sigma$, 1/s^2 */
+    std::complex<double> shift;
+
+    /** Whether the factorisation is one of real numbers. */
+    bool is_real;
+  };
+
+  /**
+   * All of them for a step size, s.
+   * @param one_step those of the OneStepStageSolver, otherwise of the
+   * DiagonalizedStageSolver
+   */
+  std::vector<StageMatrix>
+  stage_matrices(const Body &body,
+                 const ButcherTableau &tableau,
+                 const bool one_step,
+                 const double step_size);
+
+
+
   /**
    * Exact solution by diagonalisation $A_{RK}^{-2} = T D T^{-1}$: one complex
    * factorisation $(d/\tau^2) M + A$ for a conjugate pair, one real one for a
