@@ -305,13 +305,13 @@ namespace ACF
     const auto &mapping = body.mesh().mapping();
     for (const auto &cell : body.dof_handler().active_cell_iterators())
       {
-        if (!cell->bounding_box().point_inside(X, 1e-9))
+        const typename Triangulation<dim>::active_cell_iterator mesh_cell(cell);
+        if (!mapping.get_bounding_box(mesh_cell).point_inside(X, 1e-9))
           continue;
         Point<dim> unit;
         try
           {
-            unit = mapping.transform_real_to_unit_cell(
-              typename Triangulation<dim>::active_cell_iterator(cell), X);
+            unit = mapping.transform_real_to_unit_cell(mesh_cell, X);
           }
         catch (const typename Mapping<dim>::ExcTransformationFailed &)
           {
