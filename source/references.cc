@@ -199,7 +199,8 @@ namespace ACF
           // what is missing has been found before
           if (!probe.of.empty() && is("mean"))
             checker.surface(probe.of, probe.section(), "Of");
-          if (!probe.of.empty() && is("point"))
+          if (!probe.of.empty() &&
+              (is("point") || is("stress") || is("largest")))
             checker.body(probe.of, probe.section(), "Of");
           if (!probe.of.empty() && (is("reaction") || is("joint")))
             checker.joint(probe.of, probe.section());

@@ -134,8 +134,15 @@ namespace ACF
                                                     directory,
                                                     statistics));
       if (model.output.vtu.interval > 0)
-        observers.add(std::make_unique<VtuOutput>(
-          system, directory, model.output.vtu, statistics));
+        {
+          std::unique_ptr<StressPeaks> peaks;
+          if (model.output.vtu.contain("peak von Mises stress"))
+            peaks = std::make_unique<StressPeaks>(system, statistics);
+          observers.add(std::make_unique<VtuOutput>(
+            system, directory, model.output.vtu, peaks.get(), statistics));
+          if (peaks) // later than the files, which contain no later times
+            observers.add(std::move(peaks));
+        }
       // when it stops a run, the others have seen the state
       if (model.validity.action != ValidityParameters::Action::ignore)
         observers.validity = observers.add(std::make_unique<ValidityMonitor>(

@@ -3,7 +3,7 @@
 # Copyright (C) 2026 The acf-dealii authors
 """Draws positions of a swing into one picture, coloured by von Mises stress.
 
-Needs python3-vtk9 and files with "VTU stress = true"; without a display, start it
+Needs python3-vtk9 and files with "VTU fields = von Mises stress"; without a display, start it
 with xvfb-run.
 """
 

@@ -9,6 +9,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <csignal>
@@ -21,6 +22,7 @@
 #include <system_error>
 
 #include <sys/prctl.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 
 namespace ACF
@@ -135,6 +137,20 @@ namespace ACF
 
 
 
+    // The hard limit stays, so that this one can be taken back.
+    void
+    set_processor_time(const rlim_t seconds)
+    {
+      rlimit limit;
+      if (getrlimit(RLIMIT_CPU, &limit) != 0)
+        throw_system_error("The limit of computing time cannot be read");
+      limit.rlim_cur = std::min(seconds, limit.rlim_max);
+      if (setrlimit(RLIMIT_CPU, &limit) != 0)
+        throw_system_error("The computing time cannot be limited");
+    }
+
+
+
     InputError
     received_input_error(const std::string &content)
     {
@@ -199,5 +215,24 @@ namespace ACF
         default:
           throw std::runtime_error(text);
       }
+  }
+
+
+
+  ProcessorTimeLimit::ProcessorTimeLimit(const unsigned int seconds)
+  {
+    set_processor_time(seconds);
+  }
+
+
+
+  ProcessorTimeLimit::~ProcessorTimeLimit()
+  {
+    try
+      {
+        set_processor_time(RLIM_INFINITY);
+      }
+    catch (const std::system_error &)
+      {} // then the limit stays
   }
 } // namespace ACF

@@ -4,9 +4,11 @@
 #include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/io/probe_types.h>
+#include <acf/mechanics/stress.h>
 
 #include <deal.II/base/numbers.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 
@@ -196,6 +198,103 @@ namespace ACF
 
 
 
+    // Cauchy's stress at a material point.
+    class StressProbe : public Probe
+    {
+    public:
+      StressProbe(const MultibodySystem &system,
+                  const unsigned int body,
+                  const Point<dim> &point,
+                  const bool in_body_axes)
+        : system(system)
+        , body(body)
+        , stress(system.bodies()[body], point)
+        , in_body_axes(in_body_axes)
+      {}
+
+      std::vector<std::string>
+      columns() const override
+      {
+        return {
+          "xx [Pa]", "yy [Pa]", "zz [Pa]", "xy [Pa]", "yz [Pa]", "xz [Pa]"};
+      }
+
+      std::vector<double>
+      evaluate(const SystemState &state) override
+      {
+        const StressEvaluation evaluation(system.bodies()[body],
+                                          state.positions[body],
+                                          state.time);
+        Matrix3 value = stress(evaluation).stress;
+        if (in_body_axes)
+          value =
+            transpose(evaluation.rotation()) * value * evaluation.rotation();
+        return {value[0][0],
+                value[1][1],
+                value[2][2],
+                value[0][1],
+                value[1][2],
+                value[0][2]};
+      }
+
+      unsigned int
+      n_stress_evaluations() const override
+      {
+        return 1;
+      }
+
+    private:
+      const MultibodySystem &system;
+      const unsigned int body;
+      const PointStress stress;
+      const bool in_body_axes;
+    };
+
+
+
+    // The largest von Mises stress at the nodes of a body or of its parts.
+    class LargestStressProbe : public Probe
+    {
+    public:
+      LargestStressProbe(const MultibodySystem &system,
+                         const std::vector<unsigned int> &bodies)
+        : system(system)
+        , bodies(bodies)
+      {}
+
+      std::vector<std::string>
+      columns() const override
+      {
+        return {"von Mises [Pa]"};
+      }
+
+      std::vector<double>
+      evaluate(const SystemState &state) override
+      {
+        double largest = 0;
+        for (const unsigned int b : bodies)
+          for (const StressAndStrain &value :
+               StressEvaluation(system.bodies()[b],
+                                state.positions[b],
+                                state.time)
+                 .nodal_values())
+            largest = std::max(largest, von_mises_stress(value.stress));
+        return {largest};
+      }
+
+      unsigned int
+      n_stress_evaluations() const override
+      {
+        return bodies.size();
+      }
+
+    private:
+      const MultibodySystem &system;
+      const std::vector<unsigned int> bodies;
+    };
+
+
+
     ProbeEnd
     surface_end(const MultibodySystem &system,
                 const ProbeParameters &parameters,
@@ -211,24 +310,32 @@ namespace ACF
 
 
 
-    // In the body of a name, or in the part of it that contains the point.
-    ProbeEnd
-    point_end(const MultibodySystem &system,
-              const ProbeParameters &parameters,
-              const std::string &name,
-              const std::string &entry)
+    Point<dim>
+    material_coordinates(const ProbeParameters &parameters)
     {
-      const Point<dim> point(parameters.point[0],
-                             parameters.point[1],
-                             parameters.point[2]);
+      return Point<dim>(parameters.point[0],
+                        parameters.point[1],
+                        parameters.point[2]);
+    }
+
+
+
+    // The body of a name, or the part of it, that contains the point.
+    unsigned int
+    body_at_point(const MultibodySystem &system,
+                  const ProbeParameters &parameters,
+                  const std::string &name,
+                  const std::string &entry)
+    {
       const auto candidates =
         find_bodies(system.bodies(), name, parameters.section(), entry);
       std::string problem;
       for (const unsigned int b : candidates)
         try
           {
-            return {b,
-                    material_point(system.bodies()[b].discretization(), point)};
+            cells_at(system.bodies()[b].discretization(),
+                     material_coordinates(parameters));
+            return b;
           }
         catch (const SimulationError &error)
           {
@@ -240,6 +347,20 @@ namespace ACF
                        problem,
                        "a point of the body '" + name +
                          "' in the coordinates of its mesh");
+    }
+
+
+
+    ProbeEnd
+    point_end(const MultibodySystem &system,
+              const ProbeParameters &parameters,
+              const std::string &name,
+              const std::string &entry)
+    {
+      const unsigned int b = body_at_point(system, parameters, name, entry);
+      return {b,
+              material_point(system.bodies()[b].discretization(),
+                             material_coordinates(parameters))};
     }
   } // namespace
 
@@ -266,6 +387,18 @@ namespace ACF
                                                  end.functional,
                                                  velocity);
       }
+
+    if (type == "stress")
+      return std::make_unique<StressProbe>(
+        system,
+        body_at_point(system, parameters, parameters.of, "Of"),
+        material_coordinates(parameters),
+        parameters.axes == "body");
+    if (type == "largest stress")
+      return std::make_unique<LargestStressProbe>(
+        system,
+        find_bodies(
+          system.bodies(), parameters.of, parameters.section(), "Of"));
 
     const ProbeEnd from =
       surface_end(system, parameters, parameters.from, "From");

@@ -185,7 +185,7 @@ namespace ACF
     if (parameters.type == "reaction")
       return std::make_unique<ReactionProbe>(system,
                                              j,
-                                             parameters.in_joint_axes);
+                                             parameters.axes == "joint");
     return std::make_unique<JointMotionProbe>(system.joints()[j],
                                               parameters.type);
   }

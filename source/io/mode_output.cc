@@ -65,8 +65,8 @@ namespace ACF
       {
         const SystemVector &shape = modes.modes[k].shape;
         const double scale        = 0.1 * length / largest_displacement(shape);
-        std::vector<VtuField> fields = {{"displacement", dim, true, {}},
-                                        {"mode_shape", dim, false, {}}};
+        std::vector<VtuField> fields = {{"displacement", dim, true},
+                                        {"mode_shape", dim, false}};
         for (const NodalVector &values : shape)
           {
             fields[1].values.emplace_back(values.begin(), values.end());

@@ -83,9 +83,10 @@ namespace ACF
         const auto names = this->probe->columns();
         for (unsigned int k = 0; k < names.size(); ++k)
           {
-            const std::string letter =
-              names[k].substr(names[k].find(" [") - 1, 1);
-            if (std::find(selected.begin(), selected.end(), letter) !=
+            const std::string name = names[k].substr(0, names[k].find(" ["));
+            // "x" or, of a force or a moment, "force x"; of a stress "xx"
+            const std::string component = name.substr(name.rfind(' ') + 1);
+            if (std::find(selected.begin(), selected.end(), component) !=
                 selected.end())
               indices.push_back(k);
           }
@@ -101,6 +102,12 @@ namespace ACF
       evaluate(const SystemState &state) override
       {
         return select(probe->evaluate(state));
+      }
+
+      unsigned int
+      n_stress_evaluations() const override
+      {
+        return probe->n_stress_evaluations();
       }
 
       void
@@ -158,16 +165,19 @@ namespace ACF
       "'joint angle', the angle of the first side relative to the second about "
       "the joint's z axis and its rate; 'joint displacement' and 'joint "
       "rotation' (small angles), relative motion of the first side in the "
-      "joint's axes, which turn with the second side. Units: none.",
+      "joint's axes, which turn with the second side; 'stress' at a material "
+      "point; 'largest stress', the largest von Mises stress at the nodes of a "
+      "body. Units: none.",
       Patterns::Selection("mean position|mean velocity|point position|point "
                           "velocity|chord|chord frame|energy|momentum|angular "
                           "momentum|reaction|joint angle|joint "
-                          "displacement|joint rotation"));
+                          "displacement|joint rotation|stress|largest "
+                          "stress"));
     prm.add_parameter("Of",
                       of,
                       "What the probe belongs to: 'BODY: SURFACE' for a mean, "
-                      "'BODY' for a point, the name of a joint for a reaction "
-                      "or a joint's motion. "
+                      "'BODY' for a point or a stress, the name of a joint for "
+                      "a reaction or a joint's motion. "
                       "Units: none.");
     prm.add_parameter("From",
                       from,
@@ -188,20 +198,20 @@ namespace ACF
                       "atan2(dx, dz), about z atan2(dy, dx), continued beyond "
                       "a half turn. Units: none.",
                       Patterns::Selection("x|y|z"));
-    prm.add_parameter("Components",
-                      selected,
-                      "Which components of a vector are written: some of x, y, "
-                      "z separated by ','; all if nothing is given. "
-                      "Units: none.",
-                      Patterns::List(Patterns::Selection("x|y|z"), 0, dim));
-    prm.declare_entry("Axes",
-                      "world",
-                      Patterns::Selection("world|joint"),
+    prm.add_parameter(
+      "Components",
+      selected,
+      "Which components of a vector are written: some of x, y, "
+      "z separated by ','; of a stress some of xx, yy, zz, xy, "
+      "yz, xz; all if nothing is given. Units: none.",
+      Patterns::List(Patterns::Selection("x|y|z|xx|yy|zz|xy|yz|xz"), 0, 6));
+    prm.add_parameter("Axes",
+                      axes,
                       "Axes of a reaction: those of the world, or of the joint "
-                      "(turning with its second side). Units: none.");
-    prm.add_action("Axes", [this](const std::string &value) {
-      in_joint_axes = (value == "joint");
-    });
+                      "(turning with its second side). Axes of a stress: those "
+                      "of the world, or of the mesh, which turn with the body. "
+                      "Units: none.",
+                      Patterns::Selection("world|joint|body"));
   }
 
 
@@ -209,10 +219,12 @@ namespace ACF
   void
   ProbeParameters::check() const
   {
-    const bool is_chord = (type.rfind("chord", 0) == 0);
-    const bool is_point = (type.rfind("point", 0) == 0);
-    const bool is_joint = (type == "reaction" || type.rfind("joint", 0) == 0);
-    const bool has_subject = is_point || type.rfind("mean", 0) == 0 || is_joint;
+    const bool is_chord  = (type.rfind("chord", 0) == 0);
+    const bool is_point  = (type.rfind("point", 0) == 0);
+    const bool is_joint  = (type == "reaction" || type.rfind("joint", 0) == 0);
+    const bool is_stress = (type == "stress");
+    const bool has_subject = is_point || type.rfind("mean", 0) == 0 ||
+                             is_joint || is_stress || type == "largest stress";
 
     InputProblems problems;
     const auto check_entry = [&](const std::string &entry,
@@ -237,13 +249,30 @@ namespace ACF
     check_entry("To", !to.empty(), is_chord, is_chord);
     check_entry("Point",
                 !point.empty(),
-                is_point || type == "chord frame",
-                is_point || is_chord);
+                is_point || is_stress || type == "chord frame",
+                is_point || is_stress || is_chord);
     check_entry("Components",
                 !selected.empty(),
                 false,
-                !is_chord && type != "energy" && type != "joint angle");
-    check_entry("Axes", in_joint_axes, false, type == "reaction");
+                !is_chord && type != "energy" && type != "joint angle" &&
+                  type != "largest stress");
+    for (const std::string &component : selected)
+      if ((component.size() == 2) != is_stress)
+        problems.add(InputError(section(),
+                                "Components",
+                                "'" + component + "'",
+                                std::string(is_stress ? "xx, yy, zz, xy, yz, xz"
+                                                      : "x, y, z") +
+                                  " for the type '" + type + "'"));
+    const bool can_turn = (type == "reaction" || is_stress);
+    check_entry("Axes", axes != "world", false, can_turn);
+    if (can_turn && axes == (is_stress ? "joint" : "body"))
+      problems.add(InputError(section(),
+                              "Axes",
+                              "'" + axes + "'",
+                              std::string("world, ") +
+                                (is_stress ? "body" : "joint") +
+                                " for the type '" + type + "'"));
     if (!point.empty() && point.size() != dim)
       problems.add(InputError(section(),
                               "Point",
@@ -342,11 +371,14 @@ namespace ACF
                        .ptr;
     line.append(buffer.data(), end);
     for (const auto &probe : probes)
-      for (const double value : probe->evaluate(state))
-        {
-          line += ",";
-          append(value);
-        }
+      {
+        for (const double value : probe->evaluate(state))
+          {
+            line += ",";
+            append(value);
+          }
+        statistics.stress_evaluations += probe->n_stress_evaluations();
+      }
     if (!log)
       {
         log = std::make_unique<LogFile>(file, 0);

@@ -6,13 +6,10 @@
 #include <acf/base/exceptions.h>
 #include <acf/base/files.h>
 #include <acf/io/vtu_output.h>
-#include <acf/mechanics/reduced_strain.h>
+#include <acf/mechanics/stress.h>
 
 #include <deal.II/base/data_out_base.h>
-#include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/base/utilities.h>
-
-#include <deal.II/fe/fe_values.h>
 
 #include <zlib.h>
 
@@ -156,11 +153,10 @@ namespace ACF
 
 
 
-    // Everything of a piece that does not depend on time.
+    // Points and cells of a piece, which do not depend on time.
     std::string
     geometry(const BodyDiscretization &body,
-             const NodalVector &initial_positions,
-             const unsigned int index)
+             const NodalVector &initial_positions)
     {
       const VtkCell vtk = vtk_cell(body.mesh().is_simplex());
       const std::vector<unsigned int> order =
@@ -186,63 +182,50 @@ namespace ACF
              data_array("types",
                         1,
                         std::vector<std::uint8_t>(n_cells, vtk.type)) +
-             "</Cells>\n<CellData Scalars=\"body\">\n" +
-             data_array("body", 1, std::vector<std::int32_t>(n_cells, index)) +
-             "</CellData>\n";
+             "</Cells>\n";
     }
 
 
 
-    // Stress tensors at the nodes, averaged over the cells.
-    std::vector<SymmetricTensor<2, dim>>
-    nodal_stresses(const Body &body, const NodalVector &q)
+    // Those of the fields that are at one place, of a body.
+    std::string
+    field_arrays(const std::vector<VtuField> &fields,
+                 const VtuField::Place place,
+                 const unsigned int body)
     {
-      const BodyDiscretization &space = body.discretization();
-      const double lambda             = body.material().lambda();
-      const double mu                 = body.material().mu();
-      const bool is_reduced = body.strain_measure() == StrainMeasure::reduced;
+      std::string content;
+      for (const VtuField &field : fields)
+        if (field.place == place)
+          content +=
+            field.double_precision
+              ? data_array(field.name, field.n_components, field.values[body])
+              : data_array<float>(field.name,
+                                  field.n_components,
+                                  field.values[body]);
+      return content;
+    }
 
-      FEValues<dim> values(space.mesh().mapping(),
-                           space.scalar_element(),
-                           Quadrature<dim>(
-                             space.scalar_element().get_unit_support_points()),
-                           update_gradients);
-      std::vector<unsigned int> nodes(values.dofs_per_cell);
-      std::vector<unsigned int> n_cells(space.n_nodes(), 0);
-      std::vector<SymmetricTensor<2, dim>> stresses(space.n_nodes());
 
-      for (const auto &cell : space.dof_handler().active_cell_iterators())
-        {
-          values.reinit(
-            typename Triangulation<dim>::active_cell_iterator(cell));
-          space.get_nodes(cell, nodes);
-          for (const unsigned int point : values.quadrature_point_indices())
-            {
-              Matrix3 gradient;
-              for (const unsigned int i : values.dof_indices())
-                for (unsigned int c = 0; c < dim; ++c)
-                  gradient[c] +=
-                    q[dim * nodes[i] + c] * values.shape_grad(i, point);
-              SymmetricTensor<2, dim> strain = symmetrize(gradient);
-              if (!is_reduced)
-                strain += 0.5 * symmetrize(transpose(gradient) * gradient);
-              SymmetricTensor<2, dim> stress =
-                lambda * trace(strain) * unit_symmetric_tensor<dim>() +
-                2 * mu * strain;
-              if (!is_reduced)
-                {
-                  const Matrix3 F =
-                    gradient + Matrix3(unit_symmetric_tensor<dim>());
-                  stress = symmetrize(F * Matrix3(stress) * transpose(F)) /
-                           determinant(F);
-                }
-              stresses[nodes[point]] += stress;
-              ++n_cells[nodes[point]];
-            }
-        }
-      for (unsigned int a = 0; a < space.n_nodes(); ++a)
-        stresses[a] /= n_cells[a];
-      return stresses;
+
+    // The order that ParaView names XX, YY, ZZ, XY, YZ, XZ.
+    void
+    append(std::vector<double> &values, const Symmetric3 &tensor)
+    {
+      for (const auto &[i, j] :
+           {std::pair<int, int>(0, 0), {1, 1}, {2, 2}, {0, 1}, {1, 2}, {0, 2}})
+        values.push_back(tensor[i][j]);
+    }
+
+
+
+    std::vector<double>
+    von_mises_stresses(const std::vector<StressAndStrain> &nodal_values)
+    {
+      std::vector<double> result;
+      result.reserve(nodal_values.size());
+      for (const StressAndStrain &value : nodal_values)
+        result.push_back(von_mises_stress(value.stress));
+      return result;
     }
   } // namespace
 
@@ -256,30 +239,26 @@ namespace ACF
                       "Time between two files for ParaView; 0: no such files. "
                       "Units: s.",
                       Patterns::Double(0));
-    prm.add_parameter("VTU stress",
-                      stress,
-                      "Whether the files for ParaView contain the von Mises "
-                      "stress. Units: none.");
+    prm.add_parameter(
+      "VTU fields",
+      fields,
+      "What the files for ParaView contain besides the displacement, separated "
+      "by ',': 'velocity'; 'von Mises stress', at nodes and its largest value "
+      "in cells; 'peak von Mises stress', the largest one since the start at "
+      "nodes, which needs the stress after every step; 'stress', at nodes and "
+      "its mean in cells; 'strain'; 'joint forces', the forces on the nodes of "
+      "surfaces of joints. Units: none.",
+      Patterns::List(
+        Patterns::Selection("velocity|von Mises stress|peak von Mises "
+                            "stress|stress|strain|joint forces")));
   }
 
 
 
-  std::optional<std::vector<double>>
-  von_mises_stress(const Body &body, const NodalVector &positions)
+  bool
+  VtuParameters::contain(const std::string &field) const
   {
-    const std::optional<BodyRotation> frame =
-      body_rotation(mean_deformation_gradient(body.operators(), positions),
-                    body.rotation_measure());
-    if (!frame)
-      return {};
-
-    NodalVector q(positions.size());
-    co_rotated_displacement(body.operators(), positions, frame->rotation, q);
-    std::vector<double> result;
-    result.reserve(body.operators().n_nodes);
-    for (const SymmetricTensor<2, dim> &stress : nodal_stresses(body, q))
-      result.push_back(std::sqrt(1.5) * deviator(stress).norm());
-    return result;
+    return std::find(fields.begin(), fields.end(), field) != fields.end();
   }
 
 
@@ -291,8 +270,15 @@ namespace ACF
     , directory(directory)
   {
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      geometries.push_back(
-        geometry(system.bodies()[b].discretization(), points[b], b));
+      {
+        const BodyDiscretization &body = system.bodies()[b].discretization();
+        geometries.push_back(geometry(body, points[b]));
+        indices.push_back(
+          data_array("body",
+                     1,
+                     std::vector<std::int32_t>(
+                       body.mesh().triangulation().n_active_cells(), b)));
+      }
   }
 
 
@@ -316,14 +302,11 @@ namespace ACF
           "\" NumberOfCells=\"" +
           std::to_string(body.mesh().triangulation().n_active_cells()) +
           "\">\n<PointData Vectors=\"" + fields[0].name + "\">\n";
-        for (const VtuField &field : fields)
-          content +=
-            field.double_precision
-              ? data_array(field.name, field.n_components, field.values[b])
-              : data_array<float>(field.name,
-                                  field.n_components,
-                                  field.values[b]);
-        content += "</PointData>\n" + geometries[b] + "</Piece>\n";
+        content += field_arrays(fields, VtuField::Place::nodes, b);
+        content += "</PointData>\n" + geometries[b] +
+                   "<CellData Scalars=\"body\">\n" + indices[b];
+        content += field_arrays(fields, VtuField::Place::cells, b);
+        content += "</CellData>\n</Piece>\n";
       }
     content += "</UnstructuredGrid>\n</VTKFile>\n";
     write_file(directory / (name + ".vtu"), content);
@@ -390,19 +373,136 @@ namespace ACF
 
 
 
+  StressPeaks::StressPeaks(const MultibodySystem &system,
+                           Statistics &statistics)
+    : Observer(0)
+    , system(system)
+    , statistics(statistics)
+  {
+    for (const Body &body : system.bodies())
+      peaks.emplace_back(body.discretization().n_nodes(), 0.);
+  }
+
+
+
+  void
+  StressPeaks::observe(const SystemState &state)
+  {
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        const StressEvaluation evaluation(system.bodies()[b],
+                                          state.positions[b],
+                                          state.time);
+        include(b, von_mises_stresses(evaluation.nodal_values()));
+        ++statistics.stress_evaluations;
+      }
+  }
+
+
+
+  void
+  StressPeaks::include(const unsigned int body,
+                       const std::vector<double> &stresses)
+  {
+    for (unsigned int a = 0; a < stresses.size(); ++a)
+      peaks[body][a] = std::max(peaks[body][a], stresses[a]);
+  }
+
+
+
+  void
+  StressPeaks::exchange(Archive &archive)
+  {
+    Observer::exchange(archive);
+    for (unsigned int b = 0; b < peaks.size(); ++b)
+      archive("peaks " + std::to_string(b), peaks[b]);
+  }
+
+
+
   VtuOutput::VtuOutput(const MultibodySystem &system,
                        const std::filesystem::path &directory,
                        const VtuParameters &parameters,
+                       StressPeaks *const peaks,
                        Statistics &statistics)
     : Observer(parameters.interval)
     , system(system)
-    , stress(parameters.stress)
+    , parameters(parameters)
+    , peaks(peaks)
     , statistics(statistics)
     , initial_positions(positions_of_model(system))
     , writer(system, initial_positions, directory)
   {
     Assert(parameters.interval > 0,
            ExcMessage("Without an interval there are no VTU files."));
+    Assert(peaks != nullptr || !parameters.contain("peak von Mises stress"),
+           ExcMessage("There are no peaks to be written."));
+  }
+
+
+
+  void
+  VtuOutput::add_stress_fields(const SystemState &state,
+                               std::vector<VtuField> &fields)
+  {
+    const bool with_von_mises = parameters.contain("von Mises stress");
+    const bool with_peaks     = parameters.contain("peak von Mises stress");
+    const bool with_stress    = parameters.contain("stress");
+    const bool with_strain    = parameters.contain("strain");
+    if (!with_von_mises && !with_peaks && !with_stress && !with_strain)
+      return;
+
+    constexpr auto cells = VtuField::Place::cells;
+    VtuField von_mises   = {"von_mises_stress", 1, false};
+    VtuField largest     = {"largest_von_mises_stress", 1, false, cells};
+    VtuField peak        = {"peak_von_mises_stress", 1, false};
+    VtuField stress      = {"stress", 6, false};
+    VtuField cell_stress = {"cell_stress", 6, false, cells};
+    VtuField strain      = {"strain", 6, false};
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        const StressEvaluation evaluation(system.bodies()[b],
+                                          state.positions[b],
+                                          state.time);
+        ++statistics.stress_evaluations;
+        const auto nodal_values = evaluation.nodal_values();
+        if (with_von_mises || with_peaks)
+          von_mises.values.push_back(von_mises_stresses(nodal_values));
+        if (with_peaks)
+          {
+            peaks->include(b, von_mises.values.back());
+            peak.values.push_back(peaks->of(b));
+          }
+        stress.values.emplace_back();
+        strain.values.emplace_back();
+        for (const StressAndStrain &value : nodal_values)
+          {
+            if (with_stress)
+              append(stress.values.back(), value.stress);
+            if (with_strain)
+              append(strain.values.back(), value.strain);
+          }
+        if (!with_von_mises && !with_stress)
+          continue;
+        largest.values.emplace_back();
+        cell_stress.values.emplace_back();
+        for (const auto &value : evaluation.cell_values())
+          {
+            largest.values.back().push_back(value.largest_von_mises_stress);
+            append(cell_stress.values.back(), value.mean_stress);
+          }
+      }
+
+    const auto add = [&](const bool is_wanted, VtuField &field) {
+      if (is_wanted)
+        fields.push_back(std::move(field));
+    };
+    add(with_von_mises, von_mises);
+    add(with_von_mises, largest);
+    add(with_peaks, peak);
+    add(with_stress, stress);
+    add(with_stress, cell_stress);
+    add(with_strain, strain);
   }
 
 
@@ -410,28 +510,28 @@ namespace ACF
   void
   VtuOutput::observe(const SystemState &state)
   {
-    std::vector<VtuField> fields = {{"displacement", dim, true, {}},
-                                    {"velocity", dim, false, {}}};
-    if (stress)
-      fields.push_back({"von_mises_stress", 1, false, {}});
+    std::vector<VtuField> fields = {{"displacement", dim, true}};
+    if (parameters.contain("velocity"))
+      fields.push_back({"velocity", dim, false});
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
         NodalVector displacement = state.positions[b];
         displacement -= initial_positions[b];
         fields[0].values.emplace_back(displacement.begin(), displacement.end());
-        fields[1].values.emplace_back(state.velocities[b].begin(),
-                                      state.velocities[b].end());
-        if (!stress)
-          continue;
-        const Body &body = system.bodies()[b];
-        auto values      = von_mises_stress(body, state.positions[b]);
-        if (!values)
-          throw SimulationError("The body '" + body.name() + "' at time " +
-                                format_number(state.time) +
-                                " s is so deformed that it has no rotation; "
-                                "its stress cannot be evaluated.");
-        fields[2].values.push_back(std::move(*values));
-        ++statistics.stress_evaluations;
+        if (fields.size() > 1)
+          fields[1].values.emplace_back(state.velocities[b].begin(),
+                                        state.velocities[b].end());
+      }
+    add_stress_fields(state, fields);
+    if (parameters.contain("joint forces"))
+      {
+        fields.push_back({"joint_force", dim, false});
+        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+          {
+            NodalVector force(state.positions[b].size());
+            system.add_joint_forces(b, state, force);
+            fields.back().values.emplace_back(force.begin(), force.end());
+          }
       }
     writer.write("solution-" + Utilities::int_to_string(n_files, 6),
                  fields,

@@ -298,35 +298,28 @@ namespace ACF
 
 
 
-  NodalFunctional
-  material_point(const BodyDiscretization &body, const Point<dim> &X)
+  std::vector<CellPoint>
+  cells_at(const BodyDiscretization &body, const Point<dim> &X)
   {
-    const auto &element = body.scalar_element();
     const auto &mapping = body.mesh().mapping();
+    std::vector<CellPoint> cells;
     for (const auto &cell : body.dof_handler().active_cell_iterators())
       {
         const typename Triangulation<dim>::active_cell_iterator mesh_cell(cell);
         if (!mapping.get_bounding_box(mesh_cell).point_inside(X, 1e-9))
           continue;
-        Point<dim> unit;
         try
           {
-            unit = mapping.transform_real_to_unit_cell(mesh_cell, X);
+            const Point<dim> unit =
+              mapping.transform_real_to_unit_cell(mesh_cell, X);
+            if (cell->reference_cell().contains_point(unit, 1e-9))
+              cells.push_back({cell, unit});
           }
         catch (const typename Mapping<dim>::ExcTransformationFailed &)
-          {
-            continue;
-          }
-        if (!cell->reference_cell().contains_point(unit, 1e-9))
-          continue;
-
-        std::vector<unsigned int> nodes(element.n_dofs_per_cell());
-        body.get_nodes(cell, nodes);
-        std::map<unsigned int, double> weights;
-        for (unsigned int i = 0; i < nodes.size(); ++i)
-          weights[nodes[i]] = element.shape_value(i, unit);
-        return from_map(weights);
+          {}
       }
+    if (!cells.empty())
+      return cells;
 
     double distance = std::numeric_limits<double>::max();
     for (unsigned int a = 0; a < body.n_nodes(); ++a)
@@ -340,4 +333,18 @@ namespace ACF
                           format_number(distance) + " m from the nearest node");
   }
 
+
+
+  NodalFunctional
+  material_point(const BodyDiscretization &body, const Point<dim> &X)
+  {
+    const CellPoint place = cells_at(body, X).front();
+    const auto &element   = body.scalar_element();
+    std::vector<unsigned int> nodes(element.n_dofs_per_cell());
+    body.get_nodes(place.cell, nodes);
+    std::map<unsigned int, double> weights;
+    for (unsigned int i = 0; i < nodes.size(); ++i)
+      weights[nodes[i]] = element.shape_value(i, place.unit);
+    return from_map(weights);
+  }
 } // namespace ACF

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace ACF
 {
@@ -267,8 +268,29 @@ namespace ACF
 
   namespace
   {
+    // How well the surface of a side shows the direction of an axis by its
+    // extent along it, against that across it.
+    double
+    slenderness(const JointSide &side,
+                const Vector3 &axis,
+                const std::array<Vector3, 2> &across)
+    {
+      if (side.is_ground())
+        return 1;
+      if (!side.resolves(across[0]) || !side.resolves(across[1]))
+        return std::numeric_limits<double>::infinity();
+      if (!side.resolves(axis))
+        return 0;
+      return side.extent(axis) /
+             std::min(side.extent(across[0]), side.extent(across[1]));
+    }
+
+
+
     // Rotations blocked about two axes: the axis as a direction of one side is
-    // perpendicular to two directions of the other side.
+    // perpendicular to two directions of the other side. The axis is that of
+    // the more slender side: of a pin in a thin plate, or of a fork around an
+    // eye, whose cheeks are too short to show it by their own twist.
     void
     add_hinge(Joint &joint, const std::array<Vector3, 2> &across)
     {
@@ -278,13 +300,11 @@ namespace ACF
         joint.sides[0].is_ground() ? joint.sides[0] : joint.sides[1];
       const Vector3 axis = cross_product_3d(across[0], across[1]);
 
-      const bool plane =
-        weighted.resolves(across[0]) && weighted.resolves(across[1]);
-      const bool along = weighted.resolves(axis) || !plane;
-      const bool along_is_better =
-        along && (!plane || weighted.extent(axis) >=
-                              std::min(weighted.extent(across[0]),
-                                       weighted.extent(across[1])));
+      const double here  = slenderness(weighted, axis, across);
+      const double there = slenderness(other, axis, across);
+      const bool same    = (here == there) ||
+                        std::abs(here - there) < 1e-6 * std::max(here, there);
+      const bool along_is_better = same ? here >= 1 : here > there;
       for (const Vector3 &t : across)
         {
           MarkerPolynomial row;

@@ -128,6 +128,17 @@ namespace ACF
                             "'" + format_number(scale * mesh_size) + "'");
     }
 
+    /**
+     * Seconds of computing after which the CAD kernel reads a file in vain:
+     * wrong ones can keep it busy for ever. Correct files of 0.1 to 3 MB took
+     * less than a tenth of it.
+     */
+    unsigned int
+    reading_time(const std::filesystem::path &file)
+    {
+      return 5 + 20 * std::filesystem::file_size(file) / 1000000;
+    }
+
     /** Have gmsh read the file of a geometry and mesh it. */
     GmshMesh
     mesh_geometry(const std::filesystem::path &file,
@@ -141,6 +152,7 @@ namespace ACF
           // in mm, the kernel's unit; setting it fails before the first STEP
           // file
           gmsh::vectorpair shapes;
+          const ProcessorTimeLimit limit(reading_time(file));
           gmsh::model::occ::importShapes(file.string(), shapes);
           gmsh::model::occ::synchronize();
         }

@@ -638,6 +638,42 @@ namespace ACF
 
 
 
+  Eigen::VectorXd
+  MultibodySystem::joint_marker_forces(const unsigned int index,
+                                       const Eigen::VectorXd &s,
+                                       const SystemState &state) const
+  {
+    const Joint &joint = system_joints[index];
+    return -joint.jacobian(s).transpose() *
+           state.multipliers.segment(first_rows[index], joint.n_constraints());
+  }
+
+
+
+  void
+  MultibodySystem::add_joint_forces(const unsigned int body,
+                                    const SystemState &state,
+                                    NodalVector &force) const
+  {
+    for (unsigned int j = 0; j < system_joints.size(); ++j)
+      {
+        const MarkerSet &set  = system_joints[j].markers;
+        const auto &markers   = set.markers();
+        const auto is_on_body = [&](const Marker &marker) {
+          return marker.body == body;
+        };
+        if (std::none_of(markers.begin(), markers.end(), is_on_body))
+          continue;
+        const Eigen::VectorXd F =
+          joint_marker_forces(j, set.values(state.positions), state);
+        for (unsigned int p = 0; p < markers.size(); ++p)
+          if (is_on_body(markers[p]))
+            markers[p].functional.add_adjoint(marker_value(F, p), force);
+      }
+  }
+
+
+
   MultibodySystem::Reaction
   MultibodySystem::reaction(const unsigned int index,
                             const SystemState &state) const
@@ -645,9 +681,7 @@ namespace ACF
     const Joint &joint      = system_joints[index];
     const JointSide &side   = joint.sides[joint.sides[0].is_ground() ? 1 : 0];
     const Eigen::VectorXd s = joint.markers.values(state.positions);
-    const Eigen::VectorXd F =
-      -joint.jacobian(s).transpose() *
-      state.multipliers.segment(first_rows[index], joint.n_constraints());
+    const Eigen::VectorXd F = joint_marker_forces(index, s, state);
     Reaction reaction;
     for (unsigned int p = 0; p < joint.markers.markers().size(); ++p)
       {

@@ -399,3 +399,34 @@ TEST(Joints, ContradictionOfDrives)
   s += Eigen::VectorXd::Random(s.size());
   EXPECT_NEAR(system.contradiction(2, s), 0.3, 1e-13);
 }
+
+TEST(Joints, AForkHoldsAnEyeByTheDistanceOfItsCheeks)
+{
+  // The cheeks are moved against each other across the axis, without a twist of
+  // their own: the fork has turned by the angle, whichever side is the first.
+  const BodyParameters eye =
+    body_parameters("eye",
+                    "set Mesh = cylinder\n set Cylinder from = -0.15, 0, 0\n"
+                    "set Cylinder to = 0.15, 0, 0\n"
+                    "set Cylinder radius = 0.1\n set Cells = 2, 2\n" +
+                      hexahedra);
+  const BodyParameters fork =
+    body_parameters("fork",
+                    std::string("set Mesh = ") + ACF_TEST_DATA + "/fork.geo\n" +
+                      tetrahedra);
+  constexpr double angle = 1e-3;
+  for (const std::string between :
+       {"eye: side, fork: cheeks", "fork: cheeks, eye: side"})
+    {
+      const JointParameters joint =
+        joint_parameters("revolute", between, "", Vector3({1, 0, 0}));
+      const MultibodySystem system({eye, fork}, {joint}, LoadParameters(), ".");
+      SystemVector positions = system.placement();
+      for (unsigned int i = 0; i < positions[1].size(); i += dim)
+        positions[1][i + 1] += angle * positions[1][i];
+      const Eigen::VectorXd residual = system.constraint_residual(positions);
+      ASSERT_EQ(residual.size(), 5);
+      EXPECT_LT(residual.head(3).norm(), 1e-12);
+      EXPECT_NEAR(residual.tail(2).norm(), angle, 1e-8);
+    }
+}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/io/vtu_output.h>
 
@@ -21,130 +22,22 @@
 #include <map>
 #include <set>
 
+#include <unit/output_test.h>
+
 namespace
 {
   using namespace ACF;
+  using namespace OutputTest;
   namespace fs = std::filesystem;
   using Tree   = boost::property_tree::ptree;
-  using Field  = std::function<Vector3(const Vector3 &)>;
-
-  /** An empty directory that goes away with the object. */
-  class Directory
-  {
-  public:
-    explicit Directory(const std::string &name)
-      : path(fs::current_path() / ("vtu_output_test_" + name))
-    {
-      fs::remove_all(path);
-      fs::create_directory(path);
-    }
-
-    ~Directory()
-    {
-      fs::remove_all(path);
-    }
-
-    std::set<std::string>
-    files() const
-    {
-      std::set<std::string> names;
-      for (const auto &entry : fs::directory_iterator(path))
-        names.insert(entry.path().filename());
-      return names;
-    }
-
-    const fs::path path;
-  };
-
-  Vector3
-  vector(const double x, const double y, const double z)
-  {
-    Vector3 result;
-    result[0] = x;
-    result[1] = y;
-    result[2] = z;
-    return result;
-  }
-
-  // A box from (-1, -0.5, -0.25) to (2, 0.5, 0.75), placed far away and turned
-  // by an angle beyond 90 degrees.
-  BodyParameters
-  box(const std::string &element)
-  {
-    BodyParameters body;
-    body.name                    = element + " box";
-    body.mesh.mesh               = "box";
-    body.mesh.element            = element;
-    body.mesh.box_from           = {-1, -0.5, -0.25};
-    body.mesh.box_to             = {2, 0.5, 0.75};
-    body.mesh.cells              = {3, 2, 2};
-    body.material.youngs_modulus = 2e11;
-    body.material.poissons_ratio = 0;
-    body.material.density        = 7800;
-    body.position                = Point<dim>(10, -20, 30);
-    body.rotation                = vector(1.2, -0.7, 1.9);
-    body.velocity                = vector(3, 2, 1);
-    body.angular_velocity        = vector(-1, 4, 2);
-    return body;
-  }
-
-  BodyParameters
-  cylinder(const std::string &element)
-  {
-    BodyParameters body       = box(element);
-    body.name                 = element + " cylinder";
-    body.mesh                 = MeshParameters();
-    body.mesh.mesh            = "cylinder";
-    body.mesh.element         = element;
-    body.mesh.cylinder_from   = {0, 0, 0};
-    body.mesh.cylinder_to     = {1, 2, 2};
-    body.mesh.cylinder_radius = 0.5;
-    body.mesh.cells           = {5, 3};
-    return body;
-  }
-
-  std::vector<BodyParameters>
-  all_shapes()
-  {
-    return {box("hexahedron"),
-            box("tetrahedron"),
-            cylinder("hexahedron"),
-            cylinder("tetrahedron")};
-  }
-
-  MultibodySystem
-  make_system(const std::vector<BodyParameters> &bodies)
-  {
-    return MultibodySystem(bodies, {}, LoadParameters(), fs::current_path());
-  }
 
   VtuParameters
-  output_parameters(const bool stress)
+  output_parameters(const std::vector<std::string> &fields = {"velocity"})
   {
     VtuParameters parameters;
     parameters.interval = 0.5;
-    parameters.stress   = stress;
+    parameters.fields   = fields;
     return parameters;
-  }
-
-  Vector3
-  node(const NodalVector &values, const unsigned int a)
-  {
-    return vector(values[dim * a], values[dim * a + 1], values[dim * a + 2]);
-  }
-
-  /** Nodal values f(x_a). */
-  NodalVector
-  nodal_values(const NodalVector &positions, const Field &f)
-  {
-    NodalVector result(positions.size());
-    for (unsigned int a = 0; a < positions.size() / dim; ++a)
-      {
-        const Vector3 value = f(node(positions, a));
-        for (unsigned int i = 0; i < dim; ++i)
-          result[dim * a + i] = value[i];
-      }
-    return result;
   }
 
   Vector3
@@ -196,7 +89,9 @@ namespace
     std::vector<std::int32_t> bodies;
     std::vector<Vector3> displacement;
     std::vector<Vector3> velocity;
-    std::vector<float> stress;
+
+    // single precision: values of all points or cells, one after the other
+    std::map<std::string, std::vector<float>> more;
     std::set<std::string> fields;
   };
 
@@ -249,9 +144,12 @@ namespace
       piece.fields.insert(field.first);
     piece.displacement =
       decode_vectors<double>(fields.at("displacement"), "Float64");
-    piece.velocity = decode_vectors<float>(fields.at("velocity"), "Float32");
-    if (fields.count("von_mises_stress") > 0)
-      piece.stress = decode<float>(fields.at("von_mises_stress"), "Float32");
+    if (fields.count("velocity") > 0)
+      piece.velocity = decode_vectors<float>(fields.at("velocity"), "Float32");
+    for (const std::string place : {"PointData", "CellData"})
+      for (const auto &[name, array] : arrays(tree.get_child(place)))
+        if (name != "displacement" && name != "body")
+          piece.more[name] = decode<float>(array, "Float32");
 
     EXPECT_EQ(tree.get<std::size_t>("<xmlattr>.NumberOfPoints"),
               piece.points.size());
@@ -260,7 +158,8 @@ namespace
     EXPECT_EQ(piece.types.size(), piece.cells.size());
     EXPECT_EQ(piece.bodies.size(), piece.cells.size());
     EXPECT_EQ(piece.displacement.size(), piece.points.size());
-    EXPECT_EQ(piece.velocity.size(), piece.points.size());
+    EXPECT_EQ(piece.velocity.size(),
+              fields.count("velocity") * piece.points.size());
     return piece;
   }
 
@@ -283,17 +182,20 @@ namespace
   std::vector<Piece>
   write_and_read(const MultibodySystem &system,
                  const SystemState &state,
-                 const bool stress)
+                 const std::vector<std::string> &fields = {"velocity"},
+                 StressPeaks *const peaks               = nullptr)
   {
     const Directory directory("fields");
     Statistics statistics;
-    VtuOutput output(system,
-                     directory.path,
-                     output_parameters(stress),
-                     statistics);
+    VtuOutput output(
+      system, directory.path, output_parameters(fields), peaks, statistics);
     output.observe(state);
+    const bool has_stress =
+      std::any_of(fields.begin(), fields.end(), [](const std::string &field) {
+        return field != "velocity" && field != "joint forces";
+      });
     EXPECT_EQ(statistics.stress_evaluations,
-              stress ? system.bodies().size() : 0);
+              has_stress ? system.bodies().size() : 0);
     return read_vtu(directory.path / "solution-000000.vtu");
   }
 
@@ -351,7 +253,7 @@ namespace
 TEST(VtuOutput, CellsHaveTheNodeOrderOfVtk)
 {
   const MultibodySystem system = make_system(all_shapes());
-  const auto pieces = write_and_read(system, system.initial_state(), false);
+  const auto pieces            = write_and_read(system, system.initial_state());
   ASSERT_EQ(pieces.size(), 4U);
 
   // 3 x 2 x 2 hexahedra, or 24 tetrahedra of each
@@ -398,8 +300,7 @@ TEST(VtuOutput, CellsFillTheBody)
 {
   const MultibodySystem system =
     make_system({box("hexahedron"), box("tetrahedron")});
-  for (const Piece &piece :
-       write_and_read(system, system.initial_state(), false))
+  for (const Piece &piece : write_and_read(system, system.initial_state()))
     {
       double total = 0;
       for (const auto &cell : piece.cells)
@@ -417,7 +318,7 @@ TEST(VtuOutput, PointsArePlacedPositions)
 {
   const auto shapes            = all_shapes();
   const MultibodySystem system = make_system(shapes);
-  const auto pieces = write_and_read(system, system.initial_state(), false);
+  const auto pieces            = write_and_read(system, system.initial_state());
   for (unsigned int b = 0; b < 2; ++b)
     {
       // back to the mesh: the corners of the box are points, none is outside
@@ -453,7 +354,7 @@ TEST(VtuOutput, FieldsBelongToTheirPoints)
     state.positions[b] +=
       nodal_values(state.positions[b], quadratic_displacement);
 
-  const auto pieces = write_and_read(system, state, false);
+  const auto pieces = write_and_read(system, state);
   ASSERT_EQ(pieces.size(), shapes.size());
   for (unsigned int b = 0; b < shapes.size(); ++b)
     {
@@ -484,86 +385,76 @@ TEST(VtuOutput, FieldsBelongToTheirPoints)
 
 
 
-TEST(VonMisesStress, UniaxialStretch)
+namespace
 {
-  constexpr double strain = 1e-3;
-  for (BodyParameters parameters : all_shapes())
-    for (const RotationMeasure measure :
-         {RotationMeasure::polar, RotationMeasure::three_points})
-      {
-        parameters.rotation_measure  = measure;
-        const MultibodySystem system = make_system({parameters});
-        SystemState state            = system.initial_state();
-
-        // stretch along the first axis of the mesh, then a large rotation
-        const Matrix3 rotation = rotation_matrix(vector(-2, 1, 1.5));
-        const auto stretch     = [&](const Vector3 &X) {
-          return rotation * vector((1 + strain) * X[0] + 5, X[1], X[2]);
-        };
-        state.positions[0] =
-          nodal_values(system.bodies()[0].operators().reference_positions,
-                       stretch);
-        const auto pieces = write_and_read(system, state, true);
-        EXPECT_EQ(pieces[0].stress.size(), pieces[0].points.size());
-        for (const float stress : pieces[0].stress)
-          EXPECT_NEAR(stress, 2e11 * strain, 2e11 * strain * 1e-6);
-      }
-}
+  // Stretched along the first axis of the mesh, then turned.
+  SystemState
+  stretched(const MultibodySystem &system, const double strain)
+  {
+    SystemState state      = system.initial_state();
+    const Matrix3 rotation = rotation_matrix(vector(-2, 1, 1.5));
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      state.positions[b] =
+        nodal_values(system.bodies()[b].operators().reference_positions,
+                     [&](const Vector3 &X) {
+                       return rotation *
+                              vector((1 + strain) * X[0] + 5, X[1], X[2]);
+                     });
+    return state;
+  }
+} // namespace
 
 
 
-TEST(VonMisesStress, VanishesForRotations)
+// Uniform: sigma = E epsilon r r with the turned axis r, as nu = 0.
+TEST(VtuOutput, StressesAndStrains)
 {
+  constexpr double strain      = 1e-3;
   const MultibodySystem system = make_system(all_shapes());
-  const Matrix3 rotation       = rotation_matrix(vector(1, -2, 0.5));
-  for (const Body &body : system.bodies())
+  const Vector3 r = rotation_matrix(vector(-2, 1, 1.5)) * vector(1, 0, 0);
+  // xx, yy, zz, xy, yz, xz
+  const std::array<double, 6> products = {{r[0] * r[0],
+                                           r[1] * r[1],
+                                           r[2] * r[2],
+                                           r[0] * r[1],
+                                           r[1] * r[2],
+                                           r[0] * r[2]}};
+  const auto pieces                    = write_and_read(system,
+                                     stretched(system, strain),
+                                     {"von Mises stress", "stress", "strain"});
+  ASSERT_EQ(pieces.size(), system.bodies().size());
+  for (const Piece &piece : pieces)
     {
-      const auto stresses = von_mises_stress(
-        body, nodal_values(body.initial_positions(), [&](const Vector3 &x) {
-          return rotation * x + vector(1, 2, 3);
-        }));
-      ASSERT_TRUE(stresses.has_value());
-      ASSERT_EQ(stresses->size(), body.discretization().n_nodes());
-      // rounding: strains of 1e-13, from coordinates of 40 m
-      for (const double stress : *stresses)
-        EXPECT_LT(stress, 2e11 * 1e-12);
+      EXPECT_EQ(piece.more.size(), 5U);
+      for (const auto &[name, n_values, scale] :
+           {std::make_tuple("von_mises_stress", piece.points.size(), 2e11),
+            std::make_tuple("largest_von_mises_stress",
+                            piece.cells.size(),
+                            2e11)})
+        {
+          const auto &values = piece.more.at(name);
+          ASSERT_EQ(values.size(), n_values);
+          for (const float value : values)
+            EXPECT_NEAR(value, scale * strain, scale * strain * 1e-6);
+        }
+      for (const auto &[name, n_values, scale] :
+           {std::make_tuple("stress", piece.points.size(), 2e11),
+            std::make_tuple("strain", piece.points.size(), 1.),
+            std::make_tuple("cell_stress", piece.cells.size(), 2e11)})
+        {
+          const auto &values = piece.more.at(name);
+          ASSERT_EQ(values.size(), 6 * n_values);
+          for (unsigned int k = 0; k < values.size(); ++k)
+            EXPECT_NEAR(values[k],
+                        scale * strain * products[k % 6],
+                        scale * strain * 1e-6);
+        }
     }
 }
 
 
 
-// u = k (x y, -x^2 / 2, 0), of which the mean gradient vanishes in a box around
-// the origin: the only strain is k y along x, so that the deviator of the
-// stress is that of 2 mu k y e_x e_x, whatever lambda is.
-TEST(VonMisesStress, PureBendingWithLateralContraction)
-{
-  constexpr double curvature = 1e-3;
-  for (const std::string element : {"hexahedron", "tetrahedron"})
-    {
-      BodyParameters parameters          = box(element);
-      parameters.mesh.box_from           = {-2, -1, -0.5};
-      parameters.mesh.box_to             = {2, 1, 0.5};
-      parameters.material.poissons_ratio = 0.3;
-      const MultibodySystem system       = make_system({parameters});
-      const Body &body                   = system.bodies()[0];
-      const NodalVector &X               = body.operators().reference_positions;
-      const Matrix3 rotation             = rotation_matrix(vector(0.3, -2, 1));
-      const auto stresses                = von_mises_stress(
-        body, nodal_values(X, [&](const Vector3 &p) {
-          return rotation *
-                 (p + curvature * vector(p[0] * p[1], -p[0] * p[0] / 2, 0));
-        }));
-      ASSERT_TRUE(stresses.has_value());
-      for (unsigned int a = 0; a < stresses->size(); ++a)
-        EXPECT_NEAR((*stresses)[a],
-                    2 * (2e11 / 2.6) * curvature * std::abs(X[dim * a + 1]),
-                    1e-6 * 2e11 * curvature);
-    }
-}
-
-
-
-TEST(VonMisesStress, NeedsARotation)
+TEST(VtuOutput, StressNeedsARotation)
 {
   const MultibodySystem system = make_system({box("hexahedron")});
   SystemState state            = system.initial_state();
@@ -571,12 +462,11 @@ TEST(VonMisesStress, NeedsARotation)
   // a mirrored body
   for (unsigned int i = 0; i < state.positions[0].size(); i += dim)
     state.positions[0][i] *= -1;
-  EXPECT_FALSE(
-    von_mises_stress(system.bodies()[0], state.positions[0]).has_value());
 
   const Directory directory("rotation");
   Statistics statistics;
-  VtuOutput output(system, directory.path, output_parameters(true), statistics);
+  VtuOutput output(
+    system, directory.path, output_parameters({"strain"}), nullptr, statistics);
   try
     {
       output.observe(state);
@@ -593,15 +483,108 @@ TEST(VonMisesStress, NeedsARotation)
 
 
 
+// After a small, a large and again a small stress, and when they are kept in a
+// checkpoint.
+TEST(StressPeaks, StayAfterTheirTime)
+{
+  const MultibodySystem system =
+    make_system({box("hexahedron"), box("tetrahedron")});
+  Statistics statistics;
+  StressPeaks peaks(system, statistics);
+  EXPECT_EQ(peaks.interval(), 0);
+  for (const double strain : {1e-4, 1e-3, -2e-4})
+    peaks.observe(stretched(system, strain));
+  EXPECT_EQ(statistics.stress_evaluations, 6U);
+
+  const Directory directory("peaks");
+  const fs::path file = directory.path / "peaks.h5";
+  Archive::save(file, [&](Archive &archive) { peaks.exchange(archive); });
+  StressPeaks loaded(system, statistics);
+  Archive::load(file, [&](Archive &archive) { loaded.exchange(archive); });
+
+  // what a file shows, it includes
+  const auto pieces =
+    write_and_read(system,
+                   stretched(system, 5e-4),
+                   {"peak von Mises stress", "von Mises stress"},
+                   &loaded);
+  for (const Piece &piece : pieces)
+    {
+      EXPECT_EQ(piece.more.at("peak_von_mises_stress").size(),
+                piece.points.size());
+      for (const float value : piece.more.at("peak_von_mises_stress"))
+        EXPECT_NEAR(value, 2e8, 2e2);
+      for (const float value : piece.more.at("von_mises_stress"))
+        EXPECT_NEAR(value, 1e8, 1e2);
+    }
+  const auto larger = write_and_read(system,
+                                     stretched(system, 4e-3),
+                                     {"peak von Mises stress"},
+                                     &loaded);
+  for (const float value : larger[0].more.at("peak_von_mises_stress"))
+    EXPECT_NEAR(value, 8e8, 8e2);
+}
+
+
+
+// Nodal forces of a fixed joint: their sum and their moment about the mean
+// position of the surface are its reaction.
+TEST(VtuOutput, JointForces)
+{
+  for (const std::string element : {"hexahedron", "tetrahedron"})
+    {
+      JointParameters joint;
+      joint.name    = "root";
+      joint.type    = "fixed";
+      joint.between = element + " box: x min, ground";
+      const MultibodySystem system({box(element)},
+                                   {joint},
+                                   LoadParameters(),
+                                   fs::current_path());
+      SystemState state = system.initial_state();
+      state.multipliers.resize(system.n_constraints());
+      for (unsigned int r = 0; r < system.n_constraints(); ++r)
+        state.multipliers[r] = 100 * std::cos(r + 1.);
+
+      const auto piece  = write_and_read(system, state, {"joint forces"})[0];
+      const auto &force = piece.more.at("joint_force");
+      ASSERT_EQ(force.size(), dim * piece.points.size());
+      const Body &body = system.bodies()[0];
+      const Vector3 centre =
+        surface_mean(body.discretization(),
+                     body.discretization().mesh().surface("x min", "", ""))(
+          state.positions[0]);
+      Vector3 sum, moment;
+      unsigned int n_loaded = 0;
+      for (unsigned int a = 0; a < piece.points.size(); ++a)
+        {
+          const Vector3 f =
+            vector(force[dim * a], force[dim * a + 1], force[dim * a + 2]);
+          sum += f;
+          moment += cross_product_3d(node(state.positions[0], a) - centre, f);
+          n_loaded += (f.norm() > 1e-9);
+        }
+      const auto reaction = system.reaction(0, state);
+      EXPECT_GT(reaction.force.norm(), 10);
+      EXPECT_GT(reaction.moment.norm(), 10);
+      // single precision
+      EXPECT_LT((sum - reaction.force).norm(), 1e-3);
+      EXPECT_LT((moment - reaction.moment).norm(), 1e-3);
+      // those of the surface only
+      EXPECT_GT(n_loaded, 4U);
+      EXPECT_LE(n_loaded, 25U);
+    }
+}
+
+
+
 TEST(VtuOutput, RecordListsAllTimes)
 {
   const MultibodySystem system = make_system({box("hexahedron")});
   const Directory directory("record");
   Statistics statistics;
-  VtuOutput output(system,
-                   directory.path,
-                   output_parameters(false),
-                   statistics);
+  VtuOutput output(
+    system, directory.path, output_parameters(), nullptr, statistics);
   EXPECT_EQ(output.interval(), 0.5);
 
   SystemState state = system.initial_state();
@@ -647,7 +630,8 @@ namespace
   {
     const MultibodySystem system = make_system({box("hexahedron")});
     Statistics statistics;
-    VtuOutput output(system, directory, output_parameters(false), statistics);
+    VtuOutput output(
+      system, directory, output_parameters(), nullptr, statistics);
     try
       {
         output.observe(system.initial_state());
@@ -703,10 +687,17 @@ TEST(VtuParameters, AreReadFromAModelFile)
   parameters.add_parameters(prm);
   prm.parse_input_from_string("");
   EXPECT_EQ(parameters.interval, 0);
-  EXPECT_FALSE(parameters.stress);
-  prm.parse_input_from_string("set VTU interval = 0.02\nset VTU stress = true");
+  EXPECT_EQ(parameters.fields, std::vector<std::string>{"velocity"});
+  prm.parse_input_from_string(
+    "set VTU interval = 0.02\nset VTU fields = stress, von Mises stress");
   EXPECT_EQ(parameters.interval, 0.02);
-  EXPECT_TRUE(parameters.stress);
+  EXPECT_FALSE(parameters.contain("velocity"));
+  EXPECT_TRUE(parameters.contain("stress"));
+  EXPECT_TRUE(parameters.contain("von Mises stress"));
+  prm.parse_input_from_string("set VTU fields =");
+  EXPECT_TRUE(parameters.fields.empty());
+  EXPECT_THROW(prm.parse_input_from_string("set VTU fields = pressure"),
+               dealii::ExceptionBase);
   EXPECT_THROW(prm.parse_input_from_string("set VTU interval = -1"),
                dealii::ExceptionBase);
 }

@@ -36,6 +36,23 @@ namespace ACF
    */
   std::vector<char>
   run_in_child_process(const std::function<std::vector<char>()> &task);
+
+  /**
+   * While it exists, the process is ended (signal SIGXCPU) when it has computed
+   * for so long. Only for a process that runs a task of run_in_child_process().
+   */
+  class ProcessorTimeLimit
+  {
+  public:
+    /** @param seconds from the start of the process */
+    explicit ProcessorTimeLimit(const unsigned int seconds);
+
+    ~ProcessorTimeLimit();
+
+    ProcessorTimeLimit(const ProcessorTimeLimit &) = delete;
+    ProcessorTimeLimit &
+    operator=(const ProcessorTimeLimit &) = delete;
+  };
 } // namespace ACF
 
 #endif

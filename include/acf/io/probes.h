@@ -35,8 +35,8 @@ namespace ACF
     /** Components of a vector that are written: some of x, y, z; empty: all. */
     std::vector<std::string> selected;
 
-    /** Whether a reaction is written in the axes of its joint. */
-    bool in_joint_axes = false;
+    /** Axes of a reaction or a stress: world, joint, body. */
+    std::string axes = "world";
 
     void
     add_parameters(ParameterHandler &prm);
@@ -67,6 +67,13 @@ namespace ACF
     /** The numbers; called with increasing times. */
     virtual std::vector<double>
     evaluate(const SystemState &state) = 0;
+
+    /** How often evaluate() evaluates the stress of a body. */
+    virtual unsigned int
+    n_stress_evaluations() const
+    {
+      return 0;
+    }
 
     /** Saves or loads what it remembers of earlier times. */
     virtual void

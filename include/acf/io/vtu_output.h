@@ -9,7 +9,6 @@
 #include <acf/time/time_loop.h>
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -22,8 +21,11 @@ namespace ACF
     /** Time between files, s; 0: no files. */
     double interval = 0;
 
-    /** Whether the files contain the von Mises stress. */
-    bool stress = false;
+    /** What the files contain besides displacements, see add_parameters(). */
+    std::vector<std::string> fields = {"velocity"};
+
+    bool
+    contain(const std::string &field) const;
 
     /** Declares the entries in the current subsection. */
     void
@@ -32,36 +34,22 @@ namespace ACF
 
 
 
-  /**
-   * Von Mises stress at the nodes of a body, Pa:
-   * \f[ \sigma_v = \sqrt{\tfrac32 s : s}, \quad
-   *     s = \mathrm{dev}(\lambda\, \mathrm{tr}(\varepsilon) I +
-   *                      2 \mu \varepsilon), \quad
-   *     \varepsilon = \mathrm{Sym}(\nabla q) \f]
-   * with the co-rotated displacement q; with the strain of Green and Lagrange E
-   * that of Cauchy's stress
-   * \f$(\det F)^{-1} F (\lambda\, \mathrm{tr}(E) I + 2 \mu E) F^T\f$. The
-   * stress tensors of the cells at a node are averaged with equal weights
-   * before $\sigma_v$ is taken.
-   *
-   * @param positions $x_a$, m
-   * @return one value per node; nothing if the mean deformation gradient has no
-   * rotation
-   */
-  std::optional<std::vector<double>>
-  von_mises_stress(const Body &body, const NodalVector &positions);
-
-
-
-  /** Values at the nodes of all bodies, for one file. */
+  /** Values at the nodes or in the cells of all bodies, for one file. */
   struct VtuField
   {
+    enum class Place
+    {
+      nodes,
+      cells
+    };
+
     std::string name;
     unsigned int n_components;
     bool double_precision;
+    Place place = Place::nodes;
 
     /** Of each body. */
-    std::vector<std::vector<double>> values;
+    std::vector<std::vector<double>> values = {};
   };
 
 
@@ -109,10 +97,53 @@ namespace ACF
     const MultibodySystem &system;
     const std::filesystem::path directory;
 
-    /** Of each body: the XML elements that are the same in all files. */
+    /** Of each body: the XML elements that are the same in all files, points
+     * and cells, and the index of the body in each cell. */
     std::vector<std::string> geometries;
+    std::vector<std::string> indices;
 
     std::vector<std::pair<double, std::string>> times_and_names;
+  };
+
+
+
+  /**
+   * The largest von Mises stress at each node since the start, Pa, after every
+   * step.
+   */
+  class StressPeaks : public Observer
+  {
+  public:
+    /** @param system, statistics live longer than this object */
+    StressPeaks(const MultibodySystem &system, Statistics &statistics);
+
+    void
+    observe(const SystemState &state) override;
+
+    /** The same with stresses that are known. */
+    void
+    include(const unsigned int body, const std::vector<double> &stresses);
+
+    /** Of all nodes of a body. */
+    const std::vector<double> &
+    of(const unsigned int body) const
+    {
+      return peaks[body];
+    }
+
+    std::string
+    name() const override
+    {
+      return "stress peaks";
+    }
+
+    void
+    exchange(Archive &archive) override;
+
+  private:
+    const MultibodySystem &system;
+    Statistics &statistics;
+    std::vector<std::vector<double>> peaks;
   };
 
 
@@ -121,11 +152,23 @@ namespace ACF
    * Writes `solution-000000.vtu`, `solution-000001.vtu`, ... with all bodies,
    * and `solution.pvd` with the times of these files.
    *
-   * The points are the positions at the start; warped by `displacement` they
-   * are those at the file's time. Values at points: `displacement` (m),
-   * `velocity` (m/s), and if asked for `von_mises_stress` (Pa), see
-   * von_mises_stress(). Points and displacements have double precision, so that
-   * small strains survive large displacements; the rest is single.
+   * The points are the positions at the start; warped by `displacement` (m)
+   * they are those at the file's time. Other values are those that the
+   * parameters ask for:
+   * - velocity: `velocity` (m/s);
+   * - von Mises stress: `von_mises_stress` (Pa) of the stresses that are
+   *   averaged at the nodes, and in cells `largest_von_mises_stress` (Pa) of
+   *   those that are not;
+   * - peak von Mises stress: `peak_von_mises_stress` (Pa), see StressPeaks;
+   * - stress: `stress` (Pa), averaged at the nodes, and in cells `cell_stress`,
+   *   their means; xx, yy, zz, xy, yz, xz in the axes of the world;
+   * - strain: `strain`, in the same way;
+   * - joint forces: `joint_force` (N), how the reactions are spread over the
+   *   nodes of surfaces, see MultibodySystem::add_joint_forces().
+   *
+   * Stresses and strains see StressEvaluation. Points and displacements have
+   * double precision, so that small strains survive large displacements; the
+   * rest is single.
    */
   class VtuOutput : public Observer
   {
@@ -133,6 +176,8 @@ namespace ACF
     /**
      * @param system lives longer than this object
      * @param directory where to write; exists
+     * @param peaks lives longer than this object; not null if the parameters
+     * ask for peaks
      * @param statistics counts files and stress evaluations; lives longer than
      * this object
      * @pre parameters.interval > 0
@@ -140,6 +185,7 @@ namespace ACF
     VtuOutput(const MultibodySystem &system,
               const std::filesystem::path &directory,
               const VtuParameters &parameters,
+              StressPeaks *peaks,
               Statistics &statistics);
 
     /**
@@ -163,8 +209,13 @@ namespace ACF
     exchange(Archive &archive) override;
 
   private:
+    /** Adds the stresses and strains that are asked for. */
+    void
+    add_stress_fields(const SystemState &state, std::vector<VtuField> &fields);
+
     const MultibodySystem &system;
-    const bool stress;
+    const VtuParameters parameters;
+    StressPeaks *const peaks;
     Statistics &statistics;
 
     /** Of each body: nodal positions at the start, m. */

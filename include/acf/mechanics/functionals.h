@@ -8,6 +8,8 @@
 
 #include <deal.II/base/point.h>
 
+#include <deal.II/dofs/dof_handler.h>
+
 #include <map>
 #include <set>
 
@@ -112,11 +114,28 @@ namespace ACF
   std::map<unsigned int, Vector3>
   surface_normals(const BodyDiscretization &body, const Surface &surface);
 
+  /** A point of a cell. */
+  struct CellPoint
+  {
+    typename DoFHandler<dim>::active_cell_iterator cell;
+
+    /** In the coordinates of the reference cell. */
+    Point<dim> unit;
+  };
+
   /**
-   * Position of a material point: $s(x) = \sum_a \phi_a(X) x_a$, m.
+   * The cells that contain a material point: several where they meet.
    *
    * @throws SimulationError if the body does not contain the point; its text
    * names the distance of the nearest node
+   */
+  std::vector<CellPoint>
+  cells_at(const BodyDiscretization &body, const Point<dim> &X);
+
+  /**
+   * Position of a material point: $s(x) = \sum_a \phi_a(X) x_a$, m.
+   *
+   * @throws SimulationError as cells_at()
    */
   NodalFunctional
   material_point(const BodyDiscretization &body, const Point<dim> &X);

@@ -287,6 +287,16 @@ namespace ACF
                       const Eigen::VectorXd &F,
                       NodalVector &force) const;
 
+    /**
+     * Adds $-S^T D^T \lambda$, the forces of all joints on the nodes of a
+     * body. Their sum over the nodes of a surface is the force of the joint on
+     * it; moments are pairs of such forces.
+     */
+    void
+    add_joint_forces(const unsigned int body,
+                     const SystemState &state,
+                     NodalVector &force) const;
+
     /** Adds gravity and surface loads, times a factor. */
     void
     add_loads(const unsigned int body,
@@ -339,6 +349,12 @@ namespace ACF
     }
 
   private:
+    /** Forces of a joint on its markers, $-D^T \lambda$. */
+    Eigen::VectorXd
+    joint_marker_forces(const unsigned int joint,
+                        const Eigen::VectorXd &s,
+                        const SystemState &state) const;
+
     /** @return the joints of the model and those that hold parts together */
     std::vector<JointParameters>
     make_bodies(const SystemParameters &parameters,
