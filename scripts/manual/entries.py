@@ -110,7 +110,7 @@ def check_entries(entries, all_pages):
                 code = element["c"][1]
                 words = re.findall(r"--set[ =]'?([^'=]+)=", code)
                 if re.fullmatch(r"[A-Z][\w' -]*(/[\w' +-]+)+(=.*)?", code):
-                    words.append(code.split("=")[0])
+                    words.append(code.split("=")[0].strip())
             else:
                 continue
             problems += [f"{name}: names the entry '{word}', which the "
