@@ -105,12 +105,12 @@ def check_entries(entries, all_pages):
                     for found in re.findall(r"^\s*set ([^=\n]+?)\s*=",
                                             element["c"][1], re.M)
                     if found not in names]
-                words = re.findall(r"--set[ =]'([^'=]+)=", element["c"][1])
+                words = re.findall(r"--(?:set|vary)[ =]'([^'=]+)=", element["c"][1])
             elif element["t"] == "Code":
                 code = element["c"][1]
-                words = re.findall(r"--set[ =]'?([^'=]+)=", code)
+                words = re.findall(r"--(?:set|vary)[ =]'?([^'=]+)=", code)
                 if re.fullmatch(r"[A-Z][\w' -]*(/[\w' +-]+)+(=.*)?", code):
-                    words.append(code.split("=")[0])
+                    words.append(code.split("=")[0].strip())
             else:
                 continue
             problems += [f"{name}: names the entry '{word}', which the "
