@@ -45,7 +45,7 @@ for body in crankshaft rod piston; do damped+=(--set "Bodies/$body/Stiffness dam
 expect_status 0 --output-directory crank "${quick[@]}" "${damped[@]}" --set 'Time integration/End time=0.008' \
   --set 'Time integration/Step size=4e-4' "$top/prm/crankshaft/crankshaft.prm"
 by_hand 0 crankshaft/rigid.py crank/probes.csv --from 0.002 --modes crank/modes.csv --tolerance 0.06
-# a tenth of the time later the forces are others
+# rows that claim to be ten times as early
 sed 's/^0\.00\([1-7]\)/0.000\1/' crank/probes.csv >wrong.csv
 by_hand 1 crankshaft/rigid.py wrong.csv --tolerance 0.06
 
