@@ -26,10 +26,10 @@ namespace ACF
     // Fitted to runs of the models in prm (doc/model-file.md): iterations of a
     // step, and work in bytes that the processor reads from its caches in the
     // same time.
-    constexpr double n_iterations     = 1.2;
+    constexpr double n_iterations     = 1.5;
     constexpr double solve_work       = 3;     // per byte that a solve reads
     constexpr double unknown_work     = 1.1e4; // per unknown and iteration
-    constexpr double constraint_work  = 3e5;   // per constraint and iteration
+    constexpr double constraint_work  = 6e5;   // per constraint and iteration
     constexpr double integration_work = 1.9e3; // per node of a cell,
                                                // integration point and stage
     constexpr double entry_work = 3.8e3;       // per entry that is factorised
@@ -334,6 +334,13 @@ namespace ACF
                 ", without output",
               stream);
       }
+    if (model.start.equilibrium || model.modes.number > 0)
+      print("not included",
+            (model.start.equilibrium ? "the equilibrium" : "") +
+              std::string(
+                model.start.equilibrium && model.modes.number > 0 ? ", " : "") +
+              (model.modes.number > 0 ? "modes" : ""),
+            stream);
     stream << "Based on reading factors with " << format_bytes(factor_speed)
            << "/s, matrices with " << format_bytes(operator_speed)
            << "/s and caches with " << format_bytes(core_speed)
