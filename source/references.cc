@@ -16,7 +16,7 @@ namespace ACF
     std::vector<std::string>
     known_surfaces(const MeshParameters &mesh)
     {
-      if (mesh.mirror != "none" || !mesh.cut.empty())
+      if (mesh.mirror != "none" || !mesh.cut.empty() || !mesh.surfaces.empty())
         return {};
       if (mesh.mesh == "box")
         return {"x max", "x min", "y max", "y min", "z max", "z min"};

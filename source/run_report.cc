@@ -57,6 +57,7 @@ namespace ACF
   describe_bodies(const MultibodySystem &system, std::ostream &stream)
   {
     std::string whole;
+    std::set<std::string> known_notes;
     for (const Body &body : system.bodies())
       {
         if (body.whole() != whole && !body.whole().empty())
@@ -68,7 +69,8 @@ namespace ACF
         stream
           << "Body '" << body.name()
           << "': " << mesh.triangulation().n_active_cells() << " quadratic "
-          << (mesh.is_simplex() ? "tetrahedra" : "hexahedra") << ", "
+          << (mesh.is_simplex() ? "tetrahedra" : "hexahedra")
+          << (mesh.is_curved() ? " with curved edges, " : ", ")
           << operators.n_unknowns() << " unknowns\n"
           << "  volume " << format_number(operators.volume) << " m^3, mass "
           << format_number(operators.mass) << " kg, centre of mass in the mesh "
@@ -82,6 +84,10 @@ namespace ACF
                              {inertia[1][2], inertia[2][0], inertia[0][1]}),
                            inertia.norm())
           << " kg m^2\n";
+        // bodies of the same file have them in common
+        for (const std::string &note : mesh.notes())
+          if (known_notes.insert(note).second)
+            stream << "  note: " << note << "\n";
       }
     if (system.n_constraints() > 0)
       stream << counted(system.joints().size(), "joint") << " with "

@@ -305,12 +305,13 @@ namespace ACF
     std::vector<CellPoint> cells;
     for (const auto &cell : body.dof_handler().active_cell_iterators())
       {
-        if (!cell->bounding_box().point_inside(X, 1e-9))
+        const typename Triangulation<dim>::active_cell_iterator mesh_cell(cell);
+        if (!mapping.get_bounding_box(mesh_cell).point_inside(X, 1e-9))
           continue;
         try
           {
-            const Point<dim> unit = mapping.transform_real_to_unit_cell(
-              typename Triangulation<dim>::active_cell_iterator(cell), X);
+            const Point<dim> unit =
+              mapping.transform_real_to_unit_cell(mesh_cell, X);
             if (cell->reference_cell().contains_point(unit, 1e-9))
               cells.push_back({cell, unit});
           }

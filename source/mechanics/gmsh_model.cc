@@ -19,10 +19,12 @@ namespace ACF
     public:
       ElementReader(const GmshMesh &mesh,
                     const double scale,
+                    const bool is_quadratic,
                     const MeshSource &source,
                     MeshData &data)
         : mesh(mesh)
         , scale(scale)
+        , is_quadratic(is_quadratic)
         , source(source)
         , data(data)
       {}
@@ -46,7 +48,9 @@ namespace ACF
                   element.vertices[c] = vertex(tags[c], block.tags[e]);
                 if (structdim == dim)
                   {
-                    if (type.order > 1)
+                    if (is_quadratic)
+                      add_edges(type, tags, element.vertices, block.tags[e]);
+                    else if (type.order > 1)
                       check_straight(type, tags, block.tags[e]);
                     element.material_id = ids.at(block.entity);
                     // counter-clockwise -> lexicographic
@@ -88,6 +92,41 @@ namespace ACF
         return entry->second;
       }
 
+      /** Keep the nodes in the middle of edges. */
+      void
+      add_edges(const ElementType &type,
+                const std::size_t *const tags,
+                const std::vector<unsigned int> &vertices,
+                const std::size_t element)
+      {
+        if (type.order != 2 || type.n_corners != 4)
+          throw source.error(
+            "element " + std::to_string(element) + " of the type " + type.name,
+            "tetrahedra of second order (10 nodes) for Geometry = quadratic: "
+            "save the mesh with Mesh.ElementOrder = 2");
+        const auto is_middle = [&](const int n, const int v, const int w) {
+          double distance = 0;
+          for (unsigned int d = 0; d < dim; ++d)
+            distance += std::abs(type.node_coordinates[dim * v + d] +
+                                 type.node_coordinates[dim * w + d] -
+                                 2 * type.node_coordinates[dim * n + d]);
+          return distance < 1e-6;
+        };
+        for (int n = 4; n < type.n_nodes; ++n)
+          for (int v = 0; v < 4; ++v)
+            for (int w = 0; w < v; ++w)
+              if (is_middle(n, v, w) && vertices[v] != vertices[w] &&
+                  !add_edge_node(
+                    data, vertices[v], vertices[w], node(tags[n], element)))
+                throw source.error(
+                  "element " + std::to_string(element) + " with node " +
+                    std::to_string(tags[n]) + " at " +
+                    describe_point(node(tags[n], element)) +
+                    " in the middle of an edge, on which another element has "
+                    "a node at another place",
+                  "one node on each edge");
+      }
+
       /** Compare nodes of higher order with the linear or trilinear map. */
       void
       check_straight(const ElementType &type,
@@ -120,13 +159,14 @@ namespace ACF
                   " of second or higher order, node " +
                   std::to_string(tags[n]) + " at " + describe_point(position) +
                   " is not on the straight edge",
-                "straight cells, curved geometry is not supported yet: save "
-                "the mesh with Mesh.ElementOrder = 1");
+                "straight cells: save the mesh with Mesh.ElementOrder = 1; or "
+                "Geometry = quadratic for curved tetrahedra of second order");
           }
       }
 
       const GmshMesh &mesh;
       const double scale;
+      const bool is_quadratic;
       const MeshSource &source;
       MeshData &data;
       std::unordered_map<std::size_t, unsigned int> vertices;
@@ -345,11 +385,13 @@ namespace ACF
                 const std::vector<ElementBlock> &faces,
                 const std::map<int, unsigned int> &face_ids,
                 const double scale,
+                const bool is_quadratic,
                 const MeshSource &source,
                 MeshData &data)
   {
-    ElementReader reader(mesh, scale, source, data);
+    ElementReader reader(mesh, scale, is_quadratic, source, data);
     reader.read(cells, cell_ids, data.cells, &data.cell_numbers);
     reader.read(faces, face_ids, data.faces, nullptr);
+    drop_straight_edges(data);
   }
 } // namespace ACF

@@ -5,6 +5,7 @@
 #include <acf/mechanics/mesh_generation.h>
 #include <acf/mechanics/mesh_import.h>
 #include <acf/mechanics/mesh_limits.h>
+#include <acf/mechanics/mesh_surfaces.h>
 
 #include <deal.II/base/quadrature_lib.h>
 
@@ -15,6 +16,8 @@
 
 #include <algorithm>
 #include <utility>
+
+#include "quadratic_mapping.h"
 
 namespace ACF
 {
@@ -83,16 +86,19 @@ namespace ACF
     drop_unused_vertices(data);
     named_surfaces = data.surfaces;
     named_regions  = data.regions;
+    all_notes      = data.notes;
 
-    if (is_simplex())
+    if (!is_simplex())
+      GridTools::consistently_order_cells(data.cells);
+    tria.create_triangulation(data.vertices, data.cells, SubCellData());
+    has_curved_edges = !data.curved_edges.empty();
+    if (has_curved_edges)
+      cell_mapping = std::make_unique<const QuadraticMapping>(tria, data);
+    else if (is_simplex())
       cell_mapping =
         std::make_unique<const MappingFE<dim>>(FE_SimplexP<dim>(1));
     else
-      {
-        cell_mapping = std::make_unique<const MappingQ<dim>>(1);
-        GridTools::consistently_order_cells(data.cells);
-      }
-    tria.create_triangulation(data.vertices, data.cells, SubCellData());
+      cell_mapping = std::make_unique<const MappingQ<dim>>(1);
     set_boundary_ids(data);
   }
 
@@ -160,6 +166,18 @@ namespace ACF
     return find_name(named_regions, "region", name, section, entry);
   }
 
+  bool
+  BodyMesh::is_curved() const
+  {
+    return has_curved_edges;
+  }
+
+  const std::vector<std::string> &
+  BodyMesh::notes() const
+  {
+    return all_notes;
+  }
+
   const Mapping<dim> &
   BodyMesh::mapping() const
   {
@@ -169,13 +187,17 @@ namespace ACF
   Quadrature<dim>
   BodyMesh::cell_quadrature(const unsigned int exact_degree) const
   {
-    return make_quadrature<dim>(is_simplex(), exact_degree, 9);
+    return make_quadrature<dim>(is_simplex(),
+                                exact_degree + (has_curved_edges ? 3 : 0),
+                                9);
   }
 
   Quadrature<dim - 1>
   BodyMesh::face_quadrature(const unsigned int exact_degree) const
   {
-    return make_quadrature<dim - 1>(is_simplex(), exact_degree, 13);
+    return make_quadrature<dim - 1>(is_simplex(),
+                                    exact_degree + (has_curved_edges ? 3 : 0),
+                                    13);
   }
 
   MeshData
@@ -185,7 +207,8 @@ namespace ACF
   {
     const ReferenceCell reference_cell = to_reference_cell(parameters.element);
     const MeshSource source{section, parameters.mesh};
-    const auto &cells = parameters.cells;
+    const auto &cells     = parameters.cells;
+    const auto selections = parse_surfaces(parameters.surfaces, section);
 
     MeshData data;
     if (parameters.mesh == "box")
@@ -199,12 +222,20 @@ namespace ACF
                                parameters.cylinder_radius,
                                cells[0],
                                cells[1],
-                               reference_cell);
+                               reference_cell,
+                               parameters.geometry == "quadratic");
     else
       {
+        ImportOptions options;
+        options.scale        = parameters.mesh_scale;
+        options.mesh_size    = parameters.mesh_size;
+        options.selections   = selections;
+        options.is_quadratic = (parameters.geometry == "quadratic");
+        options.surface_sizes =
+          parse_surface_sizes(parameters.surface_mesh_sizes, section);
         data = import_mesh(directory / parameters.mesh,
                            reference_cell,
-                           parameters.mesh_size,
+                           options,
                            source);
         check_number_of_cells(data.cells.size(),
                               reference_cell == ReferenceCells::Tetrahedron,
@@ -212,6 +243,7 @@ namespace ACF
                               "Mesh",
                               "'" + parameters.mesh + "'");
       }
+    select_surfaces(data, selections, source);
     if (parameters.mirror != "none")
       {
         // before, to count what is wrong once only

@@ -144,8 +144,15 @@ namespace ACF
         throw cut_error(source,
                         "'volumes' for a mesh with one volume",
                         "a mesh file with several volumes");
-      for (const CellData<dim> &cell : mesh.cells)
-        result.part_of_cell.push_back(parts.at(cell.material_id));
+      for (std::size_t c = 0; c < mesh.cells.size(); ++c)
+        {
+          const auto part = parts.find(mesh.cells[c].material_id);
+          if (part == parts.end())
+            throw cut_error(source,
+                            "the " + describe_cell(mesh, c) + " in no volume",
+                            "each cell in one physical volume");
+          result.part_of_cell.push_back(part->second);
+        }
       return result;
     }
 
@@ -193,6 +200,8 @@ namespace ACF
           {
             part.reference_cell = mesh.reference_cell;
             part.vertices       = mesh.vertices;
+            part.curved_edges   = mesh.curved_edges;
+            part.notes          = mesh.notes;
             part.surfaces       = mesh.surfaces;
           }
         std::vector<std::set<unsigned int>> used(result.parts.size());

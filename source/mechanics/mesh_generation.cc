@@ -310,7 +310,8 @@ namespace ACF
                     const double radius,
                     const unsigned int n_cells_across,
                     const unsigned int n_cells_along,
-                    const ReferenceCell &reference_cell)
+                    const ReferenceCell &reference_cell,
+                    const bool is_quadratic)
   {
     const Vector3 axis = (to - from) / from.distance(to);
 
@@ -341,18 +342,28 @@ namespace ACF
       return data;
 
     // the centres of the faces of the side are inside the radius
+    const auto on_side = [&](const Point<dim> &point) {
+      const Vector3 distance = point - from;
+      const Vector3 axial    = (distance * axis) * axis;
+      const Vector3 radial   = distance - axial;
+      return from + axial + radius / radial.norm() * radial;
+    };
     const unsigned int n_vertices = data.vertices.size();
     data                          = split_hexahedra(data);
     for (const CellData<dim - 1> &face : data.faces)
       for (const unsigned int vertex : face.vertices)
         if (face.boundary_id == 3 && vertex >= n_vertices)
-          {
-            const Vector3 distance = data.vertices[vertex] - from;
-            const Vector3 axial    = (distance * axis) * axis;
-            const Vector3 radial   = distance - axial;
-            data.vertices[vertex] =
-              from + axial + radius / radial.norm() * radial;
-          }
+          data.vertices[vertex] = on_side(data.vertices[vertex]);
+    if (is_quadratic)
+      for (const CellData<dim - 1> &face : data.faces)
+        for (unsigned int v = 0; face.boundary_id == 3 && v < 3; ++v)
+          add_edge_node(data,
+                        face.vertices[v],
+                        face.vertices[(v + 1) % 3],
+                        on_side(edge_middle(data,
+                                            face.vertices[v],
+                                            face.vertices[(v + 1) % 3])));
+    drop_straight_edges(data);
     return data;
   }
 } // namespace ACF

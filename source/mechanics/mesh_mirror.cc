@@ -145,6 +145,19 @@ namespace ACF
       for (std::size_t c = 0; c < n_cells; ++c)
         data.cell_numbers.push_back(data.cell_numbers[c]);
 
+    const auto curved_edges = data.curved_edges;
+    for (const auto &[edge, node] : curved_edges)
+      {
+        Point<dim> mirrored = node;
+        if (image[edge.first] == edge.first &&
+            image[edge.second] == edge.second)
+          mirrored[axis] = 0; // as both ends are on the plane
+        else
+          mirrored[axis] = -mirrored[axis];
+        data
+          .curved_edges[std::minmax({image[edge.first], image[edge.second]})] =
+          mirrored;
+      }
     mirror_surfaces(data, image, source);
   }
 } // namespace ACF

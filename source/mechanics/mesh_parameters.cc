@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/input_problems.h>
 #include <acf/mechanics/mesh.h>
 #include <acf/mechanics/mesh_division.h>
 #include <acf/mechanics/mesh_import.h>
 #include <acf/mechanics/mesh_limits.h>
+#include <acf/mechanics/mesh_surfaces.h>
 
 #include <deal.II/base/patterns.h>
 #include <deal.II/base/utilities.h>
@@ -117,9 +119,10 @@ namespace ACF
     prm.add_parameter(
       "Mesh",
       mesh,
-      "Mesh file of gmsh (.msh, in m), geometry that gmsh meshes (.geo and "
-      ".brep in m; .step, .stp, .igs, .iges in their own unit), 'box' or "
-      "'cylinder'; file names are relative to the folder of this file. "
+      "Mesh file of gmsh (.msh) or Abaqus (.inp), geometry that gmsh meshes "
+      "(.geo and .brep; .step, .stp, .igs, .iges in their own unit), 'box' or "
+      "'cylinder'; files without a unit are in m; file names are relative to "
+      "the folder of this file. "
       "Units: none.");
     prm.add_parameter("Element",
                       element,
@@ -134,6 +137,35 @@ namespace ACF
       "default, a tenth of the diagonal of the bounding box, which is also "
       "its limit. Units: m.",
       Patterns::Double(0));
+    prm.add_parameter(
+      "Surface mesh sizes",
+      surface_mesh_sizes,
+      "Largest element sizes at surfaces when gmsh meshes a geometry, "
+      "'NAME: size, NAME: size'; names are those of the surfaces of the "
+      "geometry, or of the entry Surfaces. The sizes grow with the distance "
+      "from the surface by a third of it. Units: m.");
+    prm.add_parameter(
+      "Geometry",
+      geometry,
+      "Edges of the cells: 'straight', or 'quadratic' as the nodes of second "
+      "order in the file, or on the surface of the geometry or the cylinder, "
+      "give them; for tetrahedra. Units: none.",
+      Patterns::Selection("straight|quadratic"));
+    prm.add_parameter(
+      "Mesh scale",
+      mesh_scale,
+      "Factor on the coordinates of a file: 0.001 if they are in mm. Files of "
+      "STEP and IGES have a unit, which is converted to m before. Everything "
+      "else in this section is in m, after this factor. Units: none.",
+      Patterns::Double(0));
+    prm.add_parameter(
+      "Surfaces",
+      surfaces,
+      "Surfaces that get a name by their place: 'NAME: plane x y z nx ny nz', "
+      "a point and the normal; 'NAME: cylinder x y z ax ay az r', a point of "
+      "the axis, its direction and the radius; 'NAME: box x1 y1 z1 x2 y2 z2', "
+      "two corners; separated by ';', each followed by 'tolerance t' if 1e-5 "
+      "of the diagonal of the bounding box does not suit. Units: m.");
     prm.add_parameter(
       "Box from",
       box_from,
@@ -187,6 +219,10 @@ namespace ACF
       return std::tie(p.mesh,
                       p.element,
                       p.mesh_size,
+                      p.surface_mesh_sizes,
+                      p.geometry,
+                      p.mesh_scale,
+                      p.surfaces,
                       p.box_from,
                       p.box_to,
                       p.cylinder_from,
@@ -212,15 +248,43 @@ namespace ACF
       throw InputError(section,
                        "Mesh",
                        mesh.empty() ? "no value" : "'" + mesh + "'",
-                       "box, cylinder, or a file .msh, .geo, .step, .stp, "
-                       ".igs, .iges or .brep");
+                       "box, cylinder, or a file .msh, .inp, .geo, .step, "
+                       ".stp, .igs, .iges or .brep");
     InputProblems problems;
-    if (mesh_size > 0 && (is_box || is_cylinder || kind == MeshFileKind::mesh))
+    const bool is_geometry = !is_box && !is_cylinder &&
+                             kind != MeshFileKind::mesh &&
+                             kind != MeshFileKind::abaqus;
+    if (mesh_size > 0 && !is_geometry)
       problems.add(InputError(section,
                               "Mesh size",
                               Utilities::to_string(mesh_size),
                               "no value for Mesh = " + mesh +
                                 ", only geometries are meshed by gmsh"));
+
+    if (!(mesh_scale > 0) || (mesh_scale != 1 && (is_box || is_cylinder)))
+      problems.add(InputError(section,
+                              "Mesh scale",
+                              "'" + format_number(mesh_scale) + "'",
+                              mesh_scale > 0 ? "no value for Mesh = " + mesh +
+                                                 ", only files are scaled"
+                                             : "a positive number"));
+    problems.attempt([&]() { parse_surfaces(surfaces, section); });
+    problems.attempt(
+      [&]() { parse_surface_sizes(surface_mesh_sizes, section); });
+    if (!surface_mesh_sizes.empty() && !is_geometry)
+      problems.add(InputError(section,
+                              "Surface mesh sizes",
+                              "'" + surface_mesh_sizes + "'",
+                              "no value for Mesh = " + mesh +
+                                ", only geometries are meshed by gmsh"));
+    if (geometry == "quadratic" && (is_box || element != "tetrahedron"))
+      problems.add(InputError(section,
+                              "Geometry",
+                              "'quadratic'",
+                              is_box
+                                ? "straight for Mesh = box"
+                                : "straight for hexahedra, only tetrahedra are "
+                                  "curved"));
 
     const auto check_point = [&](const std::vector<double> &value,
                                  const bool is_used,

@@ -55,7 +55,8 @@ namespace ACF::Testing
       for (const BodyParameters &body : system.bodies)
         {
           const MeshFileKind kind = mesh_file_kind(body.mesh.mesh);
-          if (kind != MeshFileKind::unknown && kind != MeshFileKind::mesh)
+          if (kind != MeshFileKind::unknown && kind != MeshFileKind::mesh &&
+              kind != MeshFileKind::abaqus)
             return false;
           n += n_cells(body.mesh);
         }
@@ -108,7 +109,9 @@ namespace ACF::Testing
   Outcome
   fuzz_mesh(const std::string &contents)
   {
-    const char *const name = "fuzz_input.msh";
+    // files of Abaqus begin with a keyword
+    const bool is_abaqus   = !contents.empty() && contents[0] == '*';
+    const char *const name = is_abaqus ? "fuzz_input.inp" : "fuzz_input.msh";
     write_input(name, contents);
     BodyParameters body;
     body.name                    = "body";
@@ -122,6 +125,9 @@ namespace ACF::Testing
           // a function of the input, so that the same one takes the same way
           body.mesh.mirror = (contents.size() % 8 == 1 ? "x" : "none");
           body.mesh.cut    = (contents.size() % 8 == 2 ? "volumes" : "");
+          body.mesh.geometry =
+            (contents.size() % 8 == 3 && element[0] == 't' ? "quadratic"
+                                                           : "straight");
           SystemParameters system;
           system.bodies = {body};
           auto mesh     = make_mesh_data(body.mesh, body.section(), "");

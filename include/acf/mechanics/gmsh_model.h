@@ -119,11 +119,14 @@ namespace ACF
     /** Whether an element is listed once for each of its groups. */
     bool repeats_elements = false;
 
+    /** What the reader of a file left out, a sentence each. */
+    std::vector<std::string> notes;
+
     template <typename Archive>
     void
     serialize(Archive &archive, const unsigned int /*version*/)
     {
-      archive &nodes &entities &repeats_elements;
+      archive &nodes &entities &repeats_elements &notes;
     }
   };
 
@@ -183,9 +186,12 @@ namespace ACF
    * @param faces triangles or quadrilaterals
    * @param face_ids boundary id for each entity of faces
    * @param scale metres per unit of length of the model
-   * @throws InputError if nodes do not exist, or those of higher order are not
-   * where straight edges (flat cells) have them, up to 1e-5 of the size of the
-   * cell
+   * @param is_quadratic whether cells keep the nodes in the middle of their
+   *   edges
+   * @throws InputError if nodes do not exist; if cells are quadratic and others
+   *   than tetrahedra of second order; otherwise if nodes of higher order are
+   *   not where straight edges (flat cells) have them, up to 1e-5 of the size
+   *   of the cell
    */
   void
   read_elements(const GmshMesh &mesh,
@@ -194,6 +200,7 @@ namespace ACF
                 const std::vector<ElementBlock> &faces,
                 const std::map<int, unsigned int> &face_ids,
                 const double scale,
+                const bool is_quadratic,
                 const MeshSource &source,
                 MeshData &data);
 } // namespace ACF

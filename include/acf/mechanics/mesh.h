@@ -36,6 +36,18 @@ namespace ACF
     /** Largest element size that gmsh may make, m. */
     double mesh_size = 0;
 
+    /** Sizes at surfaces that gmsh meshes, see parse_surface_sizes(). */
+    std::string surface_mesh_sizes;
+
+    /** "straight" or "quadratic" edges of the cells. */
+    std::string geometry = "straight";
+
+    /** Factor of the coordinates of a file, after its unit. */
+    double mesh_scale = 1;
+
+    /** Surfaces that are selected by their place, see parse_surfaces(). */
+    std::string surfaces;
+
     /** Two opposite corners of a box, m. */
     std::vector<double> box_from;
     std::vector<double> box_to;
@@ -79,9 +91,10 @@ namespace ACF
   };
 
   /**
-   * The mesh of a body: one connected piece of tetrahedra or of hexahedra with
-   * straight edges, its named surfaces and regions, and the mapping and the
-   * quadrature rules that fit its cells. Immutable, and where it was made.
+   * The mesh of a body: one connected piece of tetrahedra, with straight or
+   * quadratic edges, or of hexahedra with straight ones, its named surfaces and
+   * regions, and the mapping and the quadrature rules that fit its cells.
+   * Immutable, and where it was made.
    */
   class BodyMesh
   {
@@ -131,19 +144,31 @@ namespace ACF
            const std::string &section,
            const std::string &entry) const;
 
-    /** The affine or trilinear mapping of the cells. */
+    /** Whether there are edges that are not straight. */
+    bool
+    is_curved() const;
+
+    /** What the reader of a file left out, a sentence each. */
+    const std::vector<std::string> &
+    notes() const;
+
+    /** The affine, trilinear or isoparametric quadratic mapping of the cells.
+     */
     const Mapping<dim> &
     mapping() const;
 
     /**
      * A rule that integrates polynomials of total degree @p exact_degree (of
-     * that degree in each coordinate, for hexahedra) on the reference cell.
-     * @pre tetrahedra: @p exact_degree at most 9
+     * that degree in each coordinate, for hexahedra) on the reference cell; for
+     * curved cells, their products with the Jacobian, which is of degree 3.
+     * @pre tetrahedra: @p exact_degree at most 9, or 6 if they are curved
      */
     Quadrature<dim>
     cell_quadrature(const unsigned int exact_degree) const;
 
-    /** The same for a face; triangles: @p exact_degree at most 13. */
+    /** The same for a face; triangles: @p exact_degree at most 13, or 10 if
+     * they are curved, whose normals (with the area) are of degree 2; the rule
+     * is exact for degree 3. */
     Quadrature<dim - 1>
     face_quadrature(const unsigned int exact_degree) const;
 
@@ -154,7 +179,9 @@ namespace ACF
     std::map<std::string, std::set<types::boundary_id>> named_surfaces;
     std::map<std::string, std::set<types::material_id>> named_regions;
     ReferenceCell cell_type;
+    std::vector<std::string> all_notes;
     Triangulation<dim> tria;
+    bool has_curved_edges = false;
     std::unique_ptr<const Mapping<dim>> cell_mapping;
   };
 

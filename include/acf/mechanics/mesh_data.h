@@ -53,6 +53,10 @@ namespace ACF
     /** Numbers of the cells in the file; empty: counted from 1. */
     std::vector<std::size_t> cell_numbers;
 
+    /** The nodes in the middle of curved edges of tetrahedra, by the vertices
+     * of the edge, the smaller index first. Other edges are straight. */
+    std::map<std::pair<unsigned int, unsigned int>, Point<dim>> curved_edges;
+
     /** Boundary faces that belong to surfaces, vertices in any order; the
      * boundary ids are those of @p surfaces, never 0. */
     std::vector<CellData<dim - 1>> faces;
@@ -67,6 +71,9 @@ namespace ACF
     /** The surfaces are all those of a geometry, not chosen by the user: their
      * faces that are not on the boundary of the body are left out. */
     bool surfaces_of_geometry = false;
+
+    /** What the reader of a file left out, a sentence each, for people. */
+    std::vector<std::string> notes;
   };
 
   /** "element 12 at (0, 0.5, 1)": number and centre of cell @p index. */
@@ -76,6 +83,26 @@ namespace ACF
   /** "(0, 0.5, 1)" */
   std::string
   describe_point(const Point<dim> &point);
+
+  /** The middle of a straight edge. */
+  Point<dim>
+  edge_middle(const MeshData &data, const unsigned int a, const unsigned int b);
+
+  /**
+   * Put the node of an edge to a place.
+   * @return whether the edge had no node at another place, up to 1e-10 of its
+   * length
+   */
+  bool
+  add_edge_node(MeshData &data,
+                const unsigned int a,
+                const unsigned int b,
+                const Point<dim> &node);
+
+  /** Forget the nodes that are in the middle of their edges, up to 1e-10 of the
+   * lengths. */
+  void
+  drop_straight_edges(MeshData &data);
 
   /** Vertices of a face in ascending order; the fourth of a triangle is
    * invalid. */
@@ -91,7 +118,9 @@ namespace ACF
   /**
    * Stop unless all cells have positive Jacobians, at 27 points of each
    * hexahedron, that are not negligible against the product of the edge lengths
-   * (1e-6; for a tetrahedron, those at the best of its vertices).
+   * (1e-6; for a tetrahedron, those at the best of its vertices), and curved
+   * tetrahedra at 84 points one that is at least 1e-3 of that of the straight
+   * one.
    * @throws InputError with the number of such cells and the first one
    */
   void

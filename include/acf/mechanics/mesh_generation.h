@@ -31,7 +31,11 @@ namespace ACF
    * With n cells across the diameter, r = max(1, round(n/4)) of them on
    * either side belong to rings, so that 4 (n - 2 r) cells go around.
    *
-   * @pre from != to (m), radius > 0 (m), n_cells_across >= 3, n_cells_along > 0
+   * @param is_quadratic the nodes in the middle of the edges of the lateral
+   * surface lie on the radius, too
+   *
+   * @pre no quadratic hexahedra, from != to (m), radius > 0 (m), n_cells_across
+   * >= 3, n_cells_along > 0
    */
   MeshData
   generate_cylinder(const Point<dim> &from,
@@ -39,7 +43,8 @@ namespace ACF
                     const double radius,
                     const unsigned int n_cells_across,
                     const unsigned int n_cells_along,
-                    const ReferenceCell &reference_cell);
+                    const ReferenceCell &reference_cell,
+                    const bool is_quadratic = false);
 } // namespace ACF
 
 #endif

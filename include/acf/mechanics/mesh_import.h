@@ -5,8 +5,12 @@
 #define acf_mechanics_mesh_import_h
 
 #include <acf/mechanics/mesh_data.h>
+#include <acf/mechanics/mesh_surfaces.h>
 
 #include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace ACF
 {
@@ -15,6 +19,8 @@ namespace ACF
   {
     /** .msh: a mesh of gmsh, format 2.2 or 4.1, text or binary */
     mesh,
+    /** .inp: an input file of Abaqus */
+    abaqus,
     /** .geo: a script of gmsh */
     script,
     /** .step, .stp, .igs, .iges: CAD with a unit of length of its own */
@@ -29,6 +35,34 @@ namespace ACF
   MeshFileKind
   mesh_file_kind(const std::filesystem::path &file);
 
+  /** How a file is read. */
+  struct ImportOptions
+  {
+    /** Factor on coordinates, after the unit that CAD files have. */
+    double scale = 1;
+
+    /** Largest element size for geometries, m; 0: the geometry's. */
+    double mesh_size = 0;
+
+    /** Largest sizes at surfaces of geometries, by their names, m. */
+    std::vector<std::pair<std::string, double>> surface_sizes;
+
+    /** Surfaces by their place, whose names @p surface_sizes may use. */
+    std::vector<SurfaceSelection> selections;
+
+    /** Edges keep the curvature that nodes of second order give them, and
+     * geometries are meshed with such nodes. */
+    bool is_quadratic = false;
+  };
+
+  /**
+   * Read "NAME: size, NAME: size".
+   * @param section path of the body's subsection, for errors
+   * @throws InputError if the text has another form
+   */
+  std::vector<std::pair<std::string, double>>
+  parse_surface_sizes(const std::string &text, const std::string &section);
+
   /**
    * Read the file of a mesh, or let gmsh mesh the file of a geometry.
    *
@@ -39,15 +73,14 @@ namespace ACF
    * groups of a dimension, all geometric entities of that dimension take their
    * place under the same kind of names.
    *
-   * @param mesh_size largest element size for geometries, m; 0: the geometry's
    * @throws InputError if the file cannot be read or meshed, contains no or
-   *   different kinds of cells, others than @p reference_cell, curved cells or
-   *   empty groups
+   *   different kinds of cells, others than @p reference_cell, curved cells
+   *   without ImportOptions::is_quadratic, or empty groups
    */
   MeshData
   import_mesh(const std::filesystem::path &file,
               const ReferenceCell &reference_cell,
-              const double mesh_size,
+              const ImportOptions &options,
               const MeshSource &source);
 } // namespace ACF
 

@@ -50,6 +50,7 @@ namespace ACF
    * of Green and Lagrange R_i may turn each node with its material; then R A
    * R^T is no more than close to the tangent. Rotations and markers are frozen
    * by prepare().
+   * See theory (12.1).
    */
   class StageSolver
   {
@@ -115,6 +116,7 @@ namespace ACF
    * Exact solution by diagonalisation $A_{RK}^{-2} = T D T^{-1}$: one complex
    * factorisation $(d/\tau^2) M + A$ for a conjugate pair, one real one for a
    * real eigenvalue.
+   * See theory (12.3), theory (12.5).
    */
   class DiagonalizedStageSolver : public StageSolver
   {
@@ -181,6 +183,7 @@ namespace ACF
    *     \tau^2 K \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
    * Damping enters each stage with the rate $1 / (\tau \sqrt{D_i})$ alone, and
    * K on the right is without changes of low rank.
+   * See theory (12.8).
    */
   class OneStepStageSolver : public StageSolver
   {
