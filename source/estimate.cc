@@ -26,13 +26,17 @@ namespace ACF
     // Fitted to runs of the models in prm (doc/model-file.md): iterations of a
     // step, and work in bytes that the processor reads from its caches in the
     // same time.
-    constexpr double n_iterations     = 1.2;
+    constexpr double n_iterations     = 1.5;
     constexpr double solve_work       = 3;     // per byte that a solve reads
     constexpr double unknown_work     = 1.1e4; // per unknown and iteration
-    constexpr double constraint_work  = 3e5;   // per constraint and iteration
+    constexpr double constraint_work  = 6e5;   // per constraint and iteration
     constexpr double integration_work = 1.9e3; // per node of a cell,
                                                // integration point and stage
     constexpr double entry_work = 3.8e3;       // per entry that is factorised
+
+    // Measured times of steps and factorisations over estimated ones.
+    constexpr double least_ratio   = 0.3;
+    constexpr double largest_ratio = 2.7;
 
     // The stack of fronts is copied when it grows.
     constexpr double front_copies = 2;
@@ -215,6 +219,14 @@ namespace ACF
 
 
     std::string
+    integer(const double n)
+    {
+      return std::to_string(static_cast<unsigned long>(n));
+    }
+
+
+
+    std::string
     bytes(const std::size_t n)
     {
       return format_bytes(n) + " (" + std::to_string(n) + " B)";
@@ -230,7 +242,7 @@ namespace ACF
                 std::ostream &stream)
     {
       print("unknowns",
-            format_number(number_of_unknowns(system)) + " (bodies: " +
+            integer(number_of_unknowns(system)) + " (bodies: " +
               std::to_string(system.bodies().size()) + ", different ones: " +
               std::to_string(system.n_reference_bodies()) + ")",
             stream);
@@ -322,7 +334,7 @@ namespace ACF
                                                        : time.largest_step()) -
                              1e-9));
         print("steps",
-              (is_fixed ? "" : "at least ") + format_number(n_steps) + " of " +
+              (is_fixed ? "" : "at least ") + integer(n_steps) + " of " +
                 (is_fixed ? "" : "at most ") +
                 format_duration(is_fixed ? time.step_size
                                          : time.largest_step()),
@@ -334,12 +346,21 @@ namespace ACF
                 ", without output",
               stream);
       }
+    if (model.start.equilibrium || model.modes.number > 0)
+      print("not included",
+            (model.start.equilibrium ? "the equilibrium" : "") +
+              std::string(
+                model.start.equilibrium && model.modes.number > 0 ? ", " : "") +
+              (model.modes.number > 0 ? "modes" : ""),
+            stream);
     stream << "Based on reading factors with " << format_bytes(factor_speed)
            << "/s, matrices with " << format_bytes(operator_speed)
            << "/s and caches with " << format_bytes(core_speed)
            << "/s, and products of matrices with " << std::setprecision(3)
            << 1e-9 * product_speed << " Gflop/s, measured now with "
-           << counted(MultithreadInfo::n_threads(), "thread") << ".\n"
+           << counted(MultithreadInfo::n_threads(), "thread")
+           << ". Runs of known models took " << least_ratio << " to "
+           << largest_ratio << " times as long.\n"
            << std::flush;
   }
 } // namespace ACF

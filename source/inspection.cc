@@ -104,11 +104,11 @@ namespace ACF
     std::unique_ptr<const BodyMesh>
     read_part(const CommandLine &command_line)
     {
-      const double scale = command_line.scale;
       MeshParameters parameters;
-      parameters.mesh      = command_line.part.string();
-      parameters.mesh_size = command_line.mesh_size / scale;
-      const auto read      = [&]() {
+      parameters.mesh       = command_line.part.string();
+      parameters.mesh_scale = command_line.scale;
+      parameters.mesh_size  = command_line.mesh_size;
+      const auto read       = [&]() {
         try
           {
             return make_mesh_data(parameters, "", {});
@@ -123,10 +123,7 @@ namespace ACF
       };
       try
         {
-          MeshData data = read();
-          for (Point<dim> &vertex : data.vertices)
-            vertex *= scale;
-          return std::make_unique<const BodyMesh>(std::move(data),
+          return std::make_unique<const BodyMesh>(read(),
                                                   MeshSource{"",
                                                              parameters.mesh});
         }

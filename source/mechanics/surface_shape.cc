@@ -19,7 +19,7 @@ namespace ACF
     constexpr double largest_distance = 1e-5;
 
     // Relative to the radius.
-    constexpr double largest_depth = 0.1;
+    constexpr double largest_depth = 0.2;
 
     // Radii of curved surfaces, relative to their size.
     constexpr double largest_radius = 1e3;

@@ -119,11 +119,13 @@ expect_agreement --set 'Start/Projection=velocities' --set 'Bodies/third/Velocit
 
 expect_status 0 --estimate good.prm
 expect_text stdout 'times' '(measured)' 'factorisations      about ' 'a step              about ' ' iterations' \
-  'the run             about ' 'peak memory         about ' 'Gflop/s' "Body 'third'"
+  'the run             about ' 'peak memory         about ' 'Gflop/s' 'times as long' "Body 'third'"
 check '--estimate writes files' [ -z "$(find . -name '*-results')" ]
 expect_status 0 --estimate --set 'Time integration/Tolerance=1e-4' --set 'Time integration/Maximal step size=2e-3' good.prm
 expect_text stdout 'a tolerance' 'steps               at least 6 of at most 0.002 s' 'again for each step size' \
   'the run             at least '
+expect_status 0 --estimate --set 'Modes/Number=3' --set 'Start/Equilibrium=true' good.prm
+expect_text stdout 'an equilibrium' 'not included        the equilibrium, modes'
 expect_status 0 --estimate --quiet good.prm
 check '--quiet prints something' [ ! -s stdout -a ! -s stderr ]
 

@@ -64,6 +64,31 @@ printf '%s\n' 'SetFactory("OpenCASCADE");' 'Cylinder(1) = {0, 0, 0, 0, 0, 1, 0.5
 expect_status 0 --inspect half.geo
 expect_text stdout 'a half of a cylinder' 'cylinder, radius 0.5' '; a part of it, mean position 0.3'
 
+# A file of Abaqus in mm, whose lines are those of a model, too.
+cat >brick.inp <<'END'
+*NODE
+1, 0, 0, 0
+2, 20, 0, 0
+3, 20, 10, 0
+4, 0, 10, 0
+5, 0, 0, 5
+6, 20, 0, 5
+7, 20, 10, 5
+8, 0, 10, 5
+*ELEMENT, TYPE=C3D8, ELSET=BRICK
+1, 1, 2, 3, 4, 5, 6, 7, 8
+*NSET, NSET=FOOT
+1, 4, 5, 8
+END
+expect_status 0 --inspect brick.inp --scale 0.001
+expect_text stdout 'an Abaqus file' '1 quadratic hexahedra' 'volume   1e-06 m^3' 'brick: FOOT ' \
+  'plane, normal (-1, 0, 0)' 'set Mesh scale      = 0.001'
+awk '/^Lines for a model file/ { inside = 1; next } /^$/ { inside = 0 } inside' stdout |
+  sed "s/^\( *set Young's modulus =\)/\1 7e10/; s/^\( *set Density  *=\)/\1 2700/" >brick.prm
+printf 'subsection Time integration\n  set End time = 1\n  set Step size = 0.1\nend\n' >>brick.prm
+expect_status 0 --validate brick.prm
+expect_text stdout 'a scaled part in a model' 'volume 1e-06 m^3, mass 0.0027 kg'
+
 # Hexahedra are found without being asked for.
 expect_status 0 --inspect "$top/tests/data/bar_hexahedra.geo"
 expect_text stdout 'hexahedra' '24 quadratic hexahedra' 'set Element         = hexahedron' \

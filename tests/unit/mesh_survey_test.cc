@@ -162,6 +162,19 @@ TEST(SurfaceShape, TakesNothingElseForOneOfThem)
             Kind::other);
 }
 
+TEST(SurfaceShape, TakesFiveSidesForACylinder)
+{
+  const Patch prism(
+    5,
+    1,
+    [](double s, double t) {
+      return placed(std::cos(2 * M_PI * s), std::sin(2 * M_PI * s), t);
+    },
+    placed(0, 0, 0.5));
+  EXPECT_EQ(prism.shape().kind, Kind::cylinder);
+  EXPECT_NEAR(prism.shape().radius, 1, 1e-9);
+}
+
 TEST(MeshSurvey, KnowsABoxOfEitherElement)
 {
   for (const std::string element : {"tetrahedron", "hexahedron"})

@@ -55,8 +55,8 @@ namespace ACF
    * Fits a plane, a circular cylinder and a sphere to the vertices of a
    * surface, in this order, and takes the first one that all vertices lie on,
    * up to 1e-5 of the size of the surface. Of the curved ones the centres of
-   * the facets must not lie deeper than a tenth of the radius: the sides of a
-   * box are no cylinder, those of an eight-sided prism are.
+   * the facets must not lie deeper than a fifth of the radius: the sides of a
+   * box are no cylinder, those of a regular prism with more sides are.
    */
   SurfaceShape
   surface_shape(const std::vector<Point<dim>> &vertices,
