@@ -20,7 +20,19 @@ install(FILES README.md CHANGELOG.md CITATION.cff
 install(DIRECTORY doc
   DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT program
   PATTERN completion EXCLUDE
+  PATTERN Doxyfile EXCLUDE
+  PATTERN "*.dox" EXCLUDE
   PATTERN "*.1.in" EXCLUDE)
+# Scripts for results, which find their modules beside bin or in share.
+foreach(name render report sweep view)
+  install(PROGRAMS scripts/${name}
+    DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT program
+    RENAME acf-dealii-${name})
+endforeach()
+install(DIRECTORY scripts/acf_tools
+  DESTINATION ${CMAKE_INSTALL_DATADIR}/acf-dealii COMPONENT program
+  FILES_MATCHING PATTERN "*.py"
+  PATTERN __pycache__ EXCLUDE)
 # Debian's packages refer to the licence on the system instead.
 install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT licence)
 # Models and documentation name each other as they lie in the sources.

@@ -41,7 +41,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME acf-dealii)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS
-  "paraview, python3, python3-matplotlib, python3-numpy")
+  "paraview, python3, python3-matplotlib, python3-numpy, python3-vtk9, xvfb")
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION
   "flexible multibody dynamics of three-dimensional solids
 acf-dealii simulates the motion of flexible bodies that turn and move through

@@ -28,6 +28,11 @@ namespace ACF
         {"--version", "", "print the version"},
         {"--print-parameters", "", "print all entries with their defaults"},
         {"--validate", "", "read and check the model, run nothing"},
+        {"--estimate", "", "show what a run would need, run nothing"},
+        {"--inspect", "PART", "show what a mesh or a geometry contains"},
+        {"--scale", "FACTOR", "of the coordinates of the part"},
+        {"--density", "DENSITY", "of the part, kg/m^3, for its mass"},
+        {"--mesh-size", "SIZE", "largest element size of the part, m"},
         {"--set", "'Section/Entry=value'", "override an entry; repeatable"},
         {"--output-directory", "DIR", "override the output directory"},
         {"--restart", "CHECKPOINT", "go on from a checkpoint of the model"},
@@ -70,6 +75,19 @@ namespace ACF
       return n_threads;
     }
 
+    double
+    parse_positive(const Option &option, const std::string &text)
+    {
+      double value             = 0;
+      const char *const end    = text.data() + text.size();
+      const auto [rest, error] = std::from_chars(text.data(), end, value);
+      if (error != std::errc() || rest != end || !(value > 0) ||
+          !(value <= 1e100))
+        fail(option.name + " '" + text + "'",
+             "a positive number, at most 1e100");
+      return value;
+    }
+
     void
     apply(const Option &option, const std::string &value, CommandLine &result)
     {
@@ -82,6 +100,19 @@ namespace ACF
         result.action = Action::print_parameters;
       else if (option.name == "--validate")
         result.action = Action::validate;
+      else if (option.name == "--estimate")
+        result.action = Action::estimate;
+      else if (option.name == "--inspect")
+        {
+          result.action = Action::inspect;
+          result.part   = value;
+        }
+      else if (option.name == "--scale")
+        result.scale = parse_positive(option, value);
+      else if (option.name == "--density")
+        result.density = parse_positive(option, value);
+      else if (option.name == "--mesh-size")
+        result.mesh_size = parse_positive(option, value);
       else if (option.name == "--set")
         result.overrides.push_back(value);
       else if (option.name == "--output-directory")
@@ -137,17 +168,33 @@ namespace ACF
           fail("other arguments beside " + name, name + " alone");
     }
 
-    // Options of runs.
+    // Options that exclude each other, or belong to others.
     void
-    check_run(const CommandLine &command_line)
+    check_combination(const std::vector<std::string> &seen)
     {
-      if (command_line.restart && command_line.overwrite)
-        fail("--restart and --overwrite", "one of them");
-      if (command_line.action != CommandLine::Action::run &&
-          (command_line.restart || command_line.overwrite))
-        fail(command_line.restart ? "--restart with --validate"
-                                  : "--overwrite with --validate",
-             "one of them");
+      const auto has = [&](const std::string &name) {
+        return std::find(seen.begin(), seen.end(), name) != seen.end();
+      };
+      const auto exclude = [&](const std::vector<std::string> &names,
+                               const std::vector<std::string> &others) {
+        for (const std::string &name : names)
+          for (const std::string &other : others)
+            if (name != other && has(name) && has(other))
+              fail(name +
+                     (name == "--restart" && other == "--overwrite"
+                        ? " and "
+                        : " with ") +
+                     other,
+                   "one of them");
+      };
+      exclude({"--restart"}, {"--overwrite"});
+      exclude({"--restart"}, {"--validate", "--estimate", "--inspect"});
+      exclude({"--overwrite"}, {"--validate", "--estimate"});
+      exclude({"--validate", "--estimate", "--set"}, {"--inspect"});
+      exclude({"--validate"}, {"--estimate"});
+      for (const std::string name : {"--scale", "--density", "--mesh-size"})
+        if (has(name) && !has("--inspect"))
+          fail(name + " without --inspect", "it with --inspect PART");
     }
 
     void
@@ -179,13 +226,16 @@ namespace ACF
         models.push_back(*argument);
 
     check_actions(seen, arguments.size());
-    if (result.action == CommandLine::Action::run ||
-        result.action == CommandLine::Action::validate)
+    check_combination(seen);
+    using Action = CommandLine::Action;
+    if (result.action == Action::run || result.action == Action::validate ||
+        result.action == Action::estimate)
       {
         check_models(models);
-        check_run(result);
         result.model = models[0];
       }
+    else if (!models.empty())
+      fail("'" + models[0] + "' beside --inspect", "--inspect PART alone");
     return result;
   }
 
@@ -194,6 +244,7 @@ namespace ACF
   {
     std::string text =
       "Usage: acf-dealii [options] MODEL.prm\n"
+      "       acf-dealii [options] --inspect PART\n"
       "\n"
       "Simulate a flexible multibody system of 3D solids with the absolute\n"
       "coordinate formulation.\n"

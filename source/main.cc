@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/console.h>
 #include <acf/base/input_problems.h>
 #include <acf/base/interruption.h>
 #include <acf/simulation.h>
@@ -23,26 +24,25 @@ namespace
     catch (const ACF::InputErrors &errors)
       {
         for (const ACF::InputError &error : errors.errors())
-          std::cerr << "acf-dealii: " << error.what() << "\n";
-        std::cerr << std::flush;
+          ACF::print_error(std::cerr, error.what());
         return 2;
       }
     catch (const ACF::InputError &error)
       {
-        std::cerr << "acf-dealii: " << error.what() << std::endl;
+        ACF::print_error(std::cerr, error.what());
         return 2;
       }
     catch (const std::bad_alloc &)
       {
-        std::cerr << "acf-dealii: not enough memory" << std::endl;
+        ACF::print_error(std::cerr, "not enough memory");
       }
     catch (const std::exception &error)
       {
-        std::cerr << "acf-dealii: " << error.what() << std::endl;
+        ACF::print_error(std::cerr, error.what());
       }
     catch (...)
       {
-        std::cerr << "acf-dealii: an unknown error" << std::endl;
+        ACF::print_error(std::cerr, "an unknown error");
       }
     return 1;
   }

@@ -4,6 +4,8 @@
 #include <acf/base/console.h>
 #include <acf/base/exceptions.h>
 #include <acf/base/files.h>
+#include <acf/estimate.h>
+#include <acf/inspection.h>
 #include <acf/io/checkpoint.h>
 #include <acf/io/mode_output.h>
 #include <acf/io/probes.h>
@@ -18,6 +20,7 @@
 
 #include <deal.II/base/multithread_info.h>
 
+#include <chrono>
 #include <ostream>
 #include <sstream>
 
@@ -345,13 +348,20 @@ namespace ACF
         case CommandLine::Action::print_parameters:
           stream << default_model_file();
           return;
+        case CommandLine::Action::inspect:
         case CommandLine::Action::validate:
+        case CommandLine::Action::estimate:
         case CommandLine::Action::run:
           break;
       }
 
     if (command_line.n_threads > 0)
       MultithreadInfo::set_thread_limit(command_line.n_threads);
+    if (command_line.action == CommandLine::Action::inspect)
+      {
+        inspect(command_line, stream, warnings);
+        return;
+      }
 
     const ParameterFile file(command_line.model, command_line.overrides);
     const Model model = read_model(file);
@@ -375,7 +385,10 @@ namespace ACF
           }
         else
           {
+            const auto start = std::chrono::steady_clock::now();
             const MultibodySystem system(model.system, model.directory);
+            const std::chrono::duration<double> assembly_time =
+              std::chrono::steady_clock::now() - start;
             for (const ProbeParameters &probe : model.probes)
               make_probe(probe, system);
             check_number_of_modes(system, model.modes.number);
@@ -385,8 +398,12 @@ namespace ACF
             if (!command_line.quiet)
               {
                 describe_bodies(system, stream);
-                stream << log.str() << command_line.model.string()
-                       << " is valid." << std::endl;
+                stream << log.str();
+                if (command_line.action == CommandLine::Action::estimate)
+                  estimate_run(model, system, assembly_time.count(), stream);
+                else
+                  stream << command_line.model.string() << " is valid."
+                         << std::endl;
               }
           }
       }

@@ -20,6 +20,10 @@ namespace ACF
       run,
       /** Read and check the model only. */
       validate,
+      /** Show what a run would need. */
+      estimate,
+      /** Show what a mesh or a geometry contains. */
+      inspect,
       /** Print a documented file of the defaults. */
       print_parameters,
       help,
@@ -28,8 +32,21 @@ namespace ACF
 
     Action action = Action::run;
 
-    /** The model file; empty unless the action is run or validate. */
+    /** The model file; empty unless the action is run, validate or estimate.
+     */
     std::filesystem::path model;
+
+    /** The file of a mesh or a geometry to inspect. */
+    std::filesystem::path part;
+
+    /** Factor on the coordinates of the part. */
+    double scale = 1;
+
+    /** Of the part, kg/m^3; zero (not given): no mass is computed. */
+    double density = 0;
+
+    /** Largest element size of the part, m; zero (not given): the file's. */
+    double mesh_size = 0;
 
     /** "Section/Entry=value", in the order given. */
     std::vector<std::string> overrides;

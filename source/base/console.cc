@@ -6,9 +6,12 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <iomanip>
 #include <ostream>
 #include <sstream>
+
+#include <sys/ioctl.h>
 
 namespace ACF
 {
@@ -20,6 +23,50 @@ namespace ACF
       std::ostringstream text;
       text << std::setprecision(3) << value << ' ' << unit;
       return text.str();
+    }
+
+
+
+    // Of a part between 0 and 1: "[#####               ]".
+    std::string
+    bar(const double part)
+    {
+      constexpr unsigned int length = 20;
+      const auto n_done =
+        static_cast<unsigned int>(length * std::min(1., std::max(0., part)));
+      return "[" + std::string(n_done, '#') +
+             std::string(length - n_done, ' ') + "]";
+    }
+
+
+
+    // Characters that fit into a line, without the last column, after which
+    // some terminals begin a new line.
+    std::size_t
+    terminal_width()
+    {
+      winsize size;
+      if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col < 2)
+        return std::string::npos;
+      return size.ws_col - 1;
+    }
+
+
+
+    constexpr const char *red    = "\033[31m";
+    constexpr const char *yellow = "\033[33m";
+
+    // For standard error.
+    std::string
+    in_colour(const std::string &text, const char *const colour)
+    {
+      const char *const terminal = std::getenv("TERM");
+      const char *const refusal  = std::getenv("NO_COLOR");
+      if (!isatty(STDERR_FILENO) || terminal == nullptr ||
+          std::string(terminal) == "dumb" ||
+          (refusal != nullptr && *refusal != '\0'))
+        return text;
+      return colour + text + "\033[0m";
     }
   } // namespace
 
@@ -103,18 +150,22 @@ namespace ACF
       return;
     last_update = now;
 
-    const double elapsed = std::chrono::duration<double>(now - start).count();
-    const double left    = std::max(0.,
+    const double elapsed   = std::chrono::duration<double>(now - start).count();
+    const double left      = std::max(0.,
                                  elapsed * (end_time - time) /
                                    std::max(time - start_time, 1e-300));
+    const double simulated = time - start_time;
     std::ostringstream line;
-    line << "t = " << format_number(time) << " of " << format_number(end_time)
-         << " s, step " << n_steps << " (" << format_number(step_size) << " s, "
-         << iterations << (iterations == 1 ? " iteration" : " iterations")
-         << "), "
+    line << bar(time / end_time) << ' ' << format_number(time) << " of "
+         << format_number(end_time) << " s, step " << n_steps << " ("
+         << format_number(step_size) << " s, "
+         << counted(iterations, "iteration") << "), "
          << (finished ? "took " + format_duration(elapsed)
                       : format_duration(left) + " left");
-    stream << "\r\033[K" << line.str() << std::flush;
+    if (simulated > 0)
+      line << ", " << format_duration(elapsed / simulated) << " per s";
+    stream << "\r\033[K" << line.str().substr(0, terminal_width())
+           << std::flush;
     line_open = true;
   }
 
@@ -125,7 +176,16 @@ namespace ACF
   {
     if (isatty(STDOUT_FILENO) && isatty(STDERR_FILENO))
       stream << "\r\033[K";
-    stream << "acf-dealii: warning: " << message << "." << std::endl;
+    stream << in_colour("acf-dealii: warning:", yellow) << " " << message << "."
+           << std::endl;
+  }
+
+
+
+  void
+  print_error(std::ostream &stream, const std::string &message)
+  {
+    stream << in_colour("acf-dealii:", red) << " " << message << std::endl;
   }
 
 

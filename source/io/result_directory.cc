@@ -28,9 +28,13 @@ namespace ACF
 
     // Nothing else in the folder is ever touched.
     std::vector<std::filesystem::path>
-    results_in(const std::filesystem::path &directory, const bool unfinished)
+    results_in(const std::filesystem::path &directory,
+               const ResultKind kind,
+               const bool unfinished)
     {
-      static const std::regex names(
+      static const std::regex inspection(
+        "inspection-(mesh|surfaces)\\.vtu(\\.tmp)?");
+      static const std::regex run(
         "(probes\\.csv|statistics\\.json|used_parameters\\.prm|"
         "solution\\.pvd|solution-[0-9]+\\.vtu|"
         "modes\\.csv|modes\\.pvd|mode-[0-9]+\\.vtu|"
@@ -40,7 +44,8 @@ namespace ACF
       for (std::filesystem::directory_iterator file(directory, error), end;
            !error && file != end;
            file.increment(error))
-        if (std::regex_match(file->path().filename().string(), names) &&
+        if (std::regex_match(file->path().filename().string(),
+                             kind == ResultKind::run ? run : inspection) &&
             (file->path().extension() == ".tmp") == unfinished)
           files.push_back(file->path());
       check(error, "Reading the folder", directory);
@@ -93,17 +98,18 @@ namespace ACF
 
   std::filesystem::path
   prepare_result_directory(const std::filesystem::path &directory,
-                           const EarlierResults earlier)
+                           const EarlierResults earlier,
+                           const ResultKind kind)
   {
     std::error_code error;
     std::filesystem::create_directories(directory, error);
     if (error || !std::filesystem::is_directory(directory))
       throw SimulationError("Cannot make the output directory " +
                             directory.string() + ": " + error.message() + ".");
-    remove(results_in(directory, true));
+    remove(results_in(directory, kind, true));
     if (earlier == EarlierResults::keep)
       return {};
-    const auto files = results_in(directory, false);
+    const auto files = results_in(directory, kind, false);
     if (files.empty())
       return {};
     if (earlier == EarlierResults::set_aside)

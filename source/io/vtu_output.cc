@@ -11,8 +11,6 @@
 #include <deal.II/base/data_out_base.h>
 #include <deal.II/base/utilities.h>
 
-#include <zlib.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -20,29 +18,14 @@
 #include <cstring>
 #include <sstream>
 
+#include "vtk_arrays.h"
+
 namespace ACF
 {
+  using Vtk::data_array;
+
   namespace
   {
-    static_assert(
-      __BYTE_ORDER__ == __ORDER_LITTLE_ENDIAN__,
-      "The byte order of the VTU files is written as little endian");
-
-    template <typename Number>
-    constexpr const char *vtk_type = nullptr;
-    template <>
-    constexpr const char *vtk_type<double> = "Float64";
-    template <>
-    constexpr const char *vtk_type<float> = "Float32";
-    template <>
-    constexpr const char *vtk_type<std::int64_t> = "Int64";
-    template <>
-    constexpr const char *vtk_type<std::int32_t> = "Int32";
-    template <>
-    constexpr const char *vtk_type<std::uint8_t> = "UInt8";
-
-
-
     /** A cell type of VTK and its nodes, in half edges of the unit cell. */
     struct VtkCell
     {
@@ -102,53 +85,6 @@ namespace ACF
           order.push_back(it - support.begin());
         }
       return order;
-    }
-
-
-
-    // A data array in VTK's form: base64 of the numbers of blocks (one), bytes
-    // per block, bytes in an incomplete block (none) and compressed bytes; then
-    // base64 of what zlib makes of the values.
-    template <typename Number>
-    std::string
-    data_array(const std::string &name,
-               const unsigned int n_components,
-               const std::vector<Number> &values)
-    {
-      const uLong n_bytes = values.size() * sizeof(Number);
-      uLongf n_packed     = compressBound(n_bytes);
-      std::vector<unsigned char> packed(n_packed);
-      const int status =
-        compress2(packed.data(),
-                  &n_packed,
-                  reinterpret_cast<const unsigned char *>(values.data()),
-                  n_bytes,
-                  Z_BEST_SPEED);
-      AssertThrow(status == Z_OK, ExcInternalError());
-      packed.resize(n_packed);
-
-      const std::array<std::uint64_t, 4> sizes = {{1, n_bytes, 0, n_packed}};
-      std::vector<unsigned char> header(sizeof(sizes));
-      std::memcpy(header.data(), sizes.data(), header.size());
-
-      return "<DataArray type=\"" + std::string(vtk_type<Number>) +
-             "\" Name=\"" + name + "\" NumberOfComponents=\"" +
-             std::to_string(n_components) + "\" format=\"binary\">" +
-             Utilities::encode_base64(header) +
-             Utilities::encode_base64(packed) + "</DataArray>\n";
-    }
-
-
-
-    template <typename Number, typename Values>
-    std::string
-    data_array(const std::string &name,
-               const unsigned int n_components,
-               const Values &values)
-    {
-      return data_array(name,
-                        n_components,
-                        std::vector<Number>(values.begin(), values.end()));
     }
 
 
@@ -289,11 +225,7 @@ namespace ACF
                    const double time,
                    const std::string &list)
   {
-    // version 2.2 stands for today's order of the nodes of Lagrange cells
-    std::string content =
-      "<?xml version=\"1.0\"?>\n<VTKFile type=\"UnstructuredGrid\" "
-      "version=\"2.2\" byte_order=\"LittleEndian\" header_type=\"UInt64\" "
-      "compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
+    std::string content = Vtk::file_begin();
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
         const BodyDiscretization &body = system.bodies()[b].discretization();
@@ -308,7 +240,7 @@ namespace ACF
         content += field_arrays(fields, VtuField::Place::cells, b);
         content += "</CellData>\n</Piece>\n";
       }
-    content += "</UnstructuredGrid>\n</VTKFile>\n";
+    content += Vtk::file_end();
     write_file(directory / (name + ".vtu"), content);
 
     times_and_names.emplace_back(time, name + ".vtu");

@@ -129,9 +129,9 @@ namespace ACF
     }
 
     /**
-     * Seconds of computing after which the CAD kernel reads a file in vain:
-     * wrong ones can keep it busy for ever. Correct files of 0.1 to 3 MB took
-     * less than a tenth of it.
+     * Seconds of computing after which reading a CAD file is given up: wrong
+     * ones can keep the kernel busy for ever. A STEP file of 1.6 MB, a plate
+     * with 400 holes, took 1 s.
      */
     unsigned int
     reading_time(const std::filesystem::path &file)

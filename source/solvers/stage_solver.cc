@@ -93,9 +93,41 @@ namespace ACF
 
 
 
-    // Makes a system if there is none, and prepares it for the equations in
-    // which rate stands for the derivative by time: with Rayleigh damping
-    // rate^2 M + rate (alpha M + beta A) + A.
+    // The matrix of a body in which rate stands for the derivative by time:
+    // with Rayleigh damping rate^2 M + rate (alpha M + beta A) + A.
+    template <typename Number>
+    BodyMatrix<Number>
+    body_matrix(const Body &body, const Number rate, const Number squared_rate)
+    {
+      if (!body.is_damped())
+        return {squared_rate, Number(1)};
+      const Number scale = 1. + body.stiffness_damping() * rate;
+      return {(squared_rate + body.mass_damping() * rate) / scale, scale};
+    }
+
+
+
+    // The rate of a component of the diagonalised stages, and its square;
+    // eigenvalues of the inverse tableau have positive real parts.
+    std::pair<std::complex<double>, std::complex<double>>
+    rates_of(const StageDiagonalization::Component &component,
+             const double step_size)
+    {
+      return {std::sqrt(component.eigenvalue) / step_size,
+              component.eigenvalue / (step_size * step_size)};
+    }
+
+    // Those of a one-step matrix.
+    std::pair<double, double>
+    rates_of(const double diagonal, const double step_size)
+    {
+      const double squared_rate = 1 / (step_size * step_size * diagonal);
+      return {std::sqrt(squared_rate), squared_rate};
+    }
+
+
+
+    // Makes a system if there is none, and prepares it.
     template <typename Number>
     void
     prepare_system(std::unique_ptr<CoupledSystem<Number>> &coupled_system,
@@ -113,14 +145,7 @@ namespace ACF
           std::make_unique<CoupledSystem<Number>>(system, cache, statistics);
       std::vector<BodyMatrix<Number>> matrices;
       for (const Body &body : system.bodies())
-        if (body.is_damped())
-          {
-            const Number scale = 1. + body.stiffness_damping() * rate;
-            matrices.push_back(
-              {(squared_rate + body.mass_damping() * rate) / scale, scale});
-          }
-        else
-          matrices.push_back({squared_rate, Number(1)});
+        matrices.push_back(body_matrix(body, rate, squared_rate));
       coupled_system->prepare(matrices,
                               rotations,
                               linearization,
@@ -128,6 +153,39 @@ namespace ACF
                               changes);
     }
   } // namespace
+
+
+
+  std::vector<StageMatrix>
+  stage_matrices(const Body &body,
+                 const ButcherTableau &tableau,
+                 const bool one_step,
+                 const double step_size)
+  {
+    std::vector<StageMatrix> matrices;
+    if (one_step)
+      {
+        const Eigen::VectorXd diagonal = triangularize_stages(tableau).diagonal;
+        for (const double entry : diagonal)
+          {
+            const auto [rate, squared_rate] = rates_of(entry, step_size);
+            matrices.push_back(
+              {body_matrix(body, rate, squared_rate).shift, true});
+          }
+        return matrices;
+      }
+    for (const auto &component : diagonalize_stages(tableau).components)
+      {
+        const auto [rate, squared_rate] = rates_of(component, step_size);
+        if (component.is_real())
+          matrices.push_back(
+            {body_matrix(body, rate.real(), squared_rate.real()).shift, true});
+        else
+          matrices.push_back(
+            {body_matrix(body, rate, squared_rate).shift, false});
+      }
+    return matrices;
+  }
 
 
 
@@ -155,12 +213,8 @@ namespace ACF
     rotations = new_rotations;
     for (unsigned int k = 0; k < diagonalization.components.size(); ++k)
       {
-        const auto &component = diagonalization.components[k];
-        // eigenvalues of the inverse tableau have positive real parts
-        const std::complex<double> rate =
-          std::sqrt(component.eigenvalue) / step_size;
-        const std::complex<double> squared_rate =
-          component.eigenvalue / (step_size * step_size);
+        const auto &component           = diagonalization.components[k];
+        const auto [rate, squared_rate] = rates_of(component, step_size);
         if (component.is_real())
           prepare_system(real_systems[k],
                          system,
@@ -329,11 +383,11 @@ namespace ACF
                                      linearization.stiffness.end());
     for (unsigned int i = 0; i < systems.size(); ++i)
       {
-        const double squared_rate =
-          1 / (step_size * step_size * triangularization.diagonal(i));
+        const auto [rate, squared_rate] =
+          rates_of(triangularization.diagonal(i), step_size);
         prepare_system(systems[i],
                        system,
-                       std::sqrt(squared_rate),
+                       rate,
                        squared_rate,
                        rotations.mean,
                        linearization,

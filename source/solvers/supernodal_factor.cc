@@ -85,30 +85,56 @@ namespace ACF
 
 
 
+  namespace
+  {
+    std::size_t
+    n_values(const EliminationTree::Supernode &supernode,
+             const unsigned int planes)
+    {
+      const unsigned int n_columns = dim * supernode.n_columns;
+      const unsigned int n_rows    = n_columns + dim * supernode.rows.size();
+      std::size_t n                = 0;
+      for (unsigned int j = 0; j < n_columns; j += Kernels::panel_width)
+        n += Kernels::panel_size(j,
+                                 std::min(Kernels::panel_width, n_columns - j),
+                                 n_rows,
+                                 planes);
+      return n;
+    }
+  } // namespace
+
+
+
+  template <typename Number, typename Real>
+  std::size_t
+  SupernodalFactor<Number, Real>::n_bytes(const EliminationTree &tree)
+  {
+    std::size_t n = 0;
+    for (const EliminationTree::Supernode &supernode : tree.supernodes())
+      n += ACF::n_values(supernode, n_planes<Number>);
+    return n * sizeof(Real);
+  }
+
+
+
   template <typename Number, typename Real>
   SupernodalFactor<Number, Real>::SupernodalFactor(
     const std::shared_ptr<const EliminationTree> &tree,
     const unsigned int n_threads)
     : tree(tree)
   {
-    constexpr unsigned int planes = n_planes<Number>;
-    std::size_t n_values          = 0;
+    std::size_t n = 0;
     for (const EliminationTree::Supernode &supernode : tree->supernodes())
       {
         Block block;
-        block.offset    = n_values;
+        block.offset    = n;
         block.n_columns = dim * supernode.n_columns;
         block.n_rows    = block.n_columns + dim * supernode.rows.size();
-        for (unsigned int j = 0; j < block.n_columns; j += Kernels::panel_width)
-          n_values += Kernels::panel_size(j,
-                                          std::min(Kernels::panel_width,
-                                                   block.n_columns - j),
-                                          block.n_rows,
-                                          planes);
+        n += n_values(supernode, n_planes<Number>);
         longest_block = std::max(longest_block, block.n_rows);
         blocks.push_back(block);
       }
-    values.resize(n_values);
+    values.resize(n);
     partition =
       divide_tree(*tree, n_bytes() < smallest_parallel_factor ? 1 : n_threads);
     for (unsigned int s = 0; s < blocks.size(); ++s)

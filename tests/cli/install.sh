@@ -22,7 +22,7 @@ mv first prefix
 prefix=$work/prefix
 library=$(echo "$prefix"/lib*/libacf.a "$prefix"/lib/*/libacf.a | tr ' ' '\n' | grep -v '\*')
 check "no library" [ -f "$library" ]
-for file in bin/acf-dealii include/acf/{model,simulation,version}.h include/acf/time/time_loop.h \
+for file in bin/acf-dealii{,-render,-report,-sweep,-view} share/acf-dealii/acf_tools/scene.py include/acf/{model,simulation,version}.h include/acf/time/time_loop.h \
   share/acf-dealii/prm/{pendulum/{pendulum.prm,README.md,plot.py},door/door.geo} share/man/man1/acf-dealii.1.gz \
   share/bash-completion/completions/acf-dealii \
   share/doc/acf-dealii/{README.md,LICENSE,CHANGELOG.md,CITATION.cff,doc/model-file.md,doc/library/main.cc}; do
@@ -55,6 +55,24 @@ expect_status 0 --version
 expect_text stdout version "acf-dealii $version"
 expect_status 0 --quiet --output-directory results --set 'Time integration/End time=1' \
   --set 'Time integration/Step size=2e-3' --set 'Output/VTU interval=0' "$model"
+
+# --- scripts for results ---
+
+for name in render report sweep view; do
+  script=$prefix/bin/acf-dealii-$name
+  "$script" --help >stdout 2>stderr
+  status=$?
+  check "exit status $status of acf-dealii-$name --help" [ $status -eq 0 ]
+  "$script" nowhere >stdout 2>stderr
+  status=$?
+  check "exit status $status of acf-dealii-$name nowhere" [ $status -eq 2 ]
+  expect_text stderr "acf-dealii-$name nowhere" "acf-dealii-$name: "
+done
+"$prefix/bin/acf-dealii-report" results -o page.html >stdout 2>stderr
+check 'the installed report fails' grep -q 'chord.deflection' page.html
+"$prefix/bin/acf-dealii-sweep" "$model" --set 'Time integration/End time=0.01' \
+  --set 'Output/VTU interval=0' --vary 'Time integration/Step size=1e-3,2e-3' -o sweep >stdout 2>stderr
+check 'the installed sweep fails' [ "$(wc -l <sweep/sweep.csv)" -eq 3 ]
 
 # --- library ---
 

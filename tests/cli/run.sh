@@ -52,6 +52,22 @@ fi
 expect_text dense/solution.pvd solution.pvd 'timestep="0"' 'timestep="0.004"' \
   'timestep="0.008"' 'solution-000002.vtu'
 
+# --- on a terminal ---
+
+on_terminal() {
+  script -qec "TERM=xterm $*" /dev/null </dev/null | tr '\r' '\n'
+}
+command=("'$acf'" --output-directory terminal --set "'Output/VTU interval=0'" \
+  --set "'Time integration/End time=0.01'" "'$pendulum'")
+on_terminal "${command[@]}" >terminal.txt
+expect_text terminal.txt 'progress on a terminal' '[####################] 0.01 of 0.01 s, step 10' ' per s'
+on_terminal "'$acf'" missing.prm >terminal.txt
+expect_text terminal.txt 'an error on a terminal' $'\033[31macf-dealii:\033[0m'
+on_terminal NO_COLOR=1 "'$acf'" missing.prm >terminal.txt
+check 'colours in spite of NO_COLOR' [ -z "$(grep $'\033' terminal.txt)" ]
+expect_text terminal.txt 'an error without colours' 'acf-dealii: missing.prm'
+rm -r terminal terminal.txt
+
 header='time [s],chord.angle [rad],chord.deflection [m],tip.x [m],tip.y [m],tip.z [m]'
 header+=',energy.kinetic [J],energy.elastic [J],energy.potential [J]'
 check "header: $(head -n 1 dense/probes.csv)" [ "$(head -n 1 dense/probes.csv)" = "$header" ]

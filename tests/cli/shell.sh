@@ -60,7 +60,7 @@ done < <(grep ' ' options)
 
 mkdir folder 'a folder'
 cp "$top/prm/four-bar/four-bar.prm" 'four bar.prm'
-touch other.txt checkpoint.h5
+touch other.txt checkpoint.h5 part.step plate.geo
 expect_offer 'a folder|folder|four bar.prm' ''
 expect_offer 'four bar.prm' --quiet 'four\ b'
 expect_offer 'four bar.prm' --quiet "'four b"
@@ -68,6 +68,8 @@ expect_offer 'folder' --validate fol
 expect_offer 'a folder|folder' --output-directory ''
 expect_offer 'folder' --output-directory = f
 expect_offer 'a folder|checkpoint.h5|folder' --restart ''
+expect_offer 'a folder|folder|part.step|plate.geo' --inspect ''
+expect_offer 'part.step' --inspect = pa
 expect_offer '1' --threads 1
 expect_offer '--output-directory|--overwrite' --quiet --o
 expect_offer 'Loads/Gravity|Loads/Gravity factor' --set Loads/G

@@ -126,9 +126,8 @@ namespace ACF::Testing
           body.mesh.mirror = (contents.size() % 8 == 1 ? "x" : "none");
           body.mesh.cut    = (contents.size() % 8 == 2 ? "volumes" : "");
           body.mesh.geometry =
-            (is_abaqus && contents.size() % 8 == 3 && element[0] == 't'
-               ? "quadratic"
-               : "straight");
+            (contents.size() % 7 == 1 && element[0] == 't' ? "quadratic"
+                                                           : "straight");
           SystemParameters system;
           system.bodies = {body};
           auto mesh     = make_mesh_data(body.mesh, body.section(), "");

@@ -108,10 +108,9 @@ namespace Tests
           const Vector3 expected = vessel.displacement(node, poissons_ratio);
           difference += (u - expected).norm_square();
           size += expected.norm_square();
-          stress_difference +=
-            std::pow(von_mises_stress(stresses[a].stress) -
-                       vessel.von_mises(node),
-                     2);
+          stress_difference += std::pow(von_mises_stress(stresses[a].stress) -
+                                          vessel.von_mises(node),
+                                        2);
           stress_size += std::pow(vessel.von_mises(node), 2);
         }
       return Figures(solution,

@@ -537,7 +537,7 @@ TEST(Restart, FilesThatWereNotListed)
   Statistics statistics;
   VtuParameters parameters;
   parameters.interval = 1;
-  VtuOutput output(run.system, folder, parameters, statistics);
+  VtuOutput output(run.system, folder, parameters, nullptr, statistics);
   std::filesystem::create_directories(folder / "solution.pvd.tmp");
   EXPECT_THROW(output.observe(run.system.initial_state()), SimulationError);
   std::filesystem::remove_all(folder / "solution.pvd.tmp");

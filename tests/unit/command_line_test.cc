@@ -76,6 +76,63 @@ TEST(CommandLine, ReadsAllOptions)
   EXPECT_TRUE(result.quiet);
 }
 
+TEST(CommandLine, ReadsEstimates)
+{
+  const CommandLine result = parse_command_line({"--estimate", "m.prm"});
+  EXPECT_EQ(result.action, Action::estimate);
+  EXPECT_EQ(result.model, "m.prm");
+  const auto error = [](const std::string &options) {
+    return "command line: found " + options + "; allowed: one of them";
+  };
+  EXPECT_EQ(error_of({"--estimate", "--validate", "m.prm"}),
+            error("--validate with --estimate"));
+  EXPECT_EQ(error_of({"--restart=a", "--estimate", "m.prm"}),
+            error("--restart with --estimate"));
+  EXPECT_EQ(error_of({"--overwrite", "--estimate", "m.prm"}),
+            error("--overwrite with --estimate"));
+  EXPECT_EQ(error_of({"--inspect=a", "--estimate"}),
+            error("--estimate with --inspect"));
+}
+
+TEST(CommandLine, ReadsOptionsOfInspections)
+{
+  const CommandLine part = parse_command_line({"--inspect", "a.step"});
+  EXPECT_EQ(part.action, Action::inspect);
+  EXPECT_EQ(part.part, "a.step");
+  EXPECT_TRUE(part.model.empty());
+  EXPECT_EQ(part.scale, 1);
+  EXPECT_EQ(part.density, 0);
+  EXPECT_EQ(part.mesh_size, 0);
+  const CommandLine all = parse_command_line({"--density=7850",
+                                              "--scale",
+                                              "1e-3",
+                                              "--inspect=a.brep",
+                                              "--mesh-size",
+                                              "0.5",
+                                              "--overwrite"});
+  EXPECT_EQ(all.scale, 1e-3);
+  EXPECT_EQ(all.density, 7850);
+  EXPECT_EQ(all.mesh_size, 0.5);
+  EXPECT_TRUE(all.overwrite);
+  for (const std::string wrong : {"", "0", "-1", "1 mm", "nan", "inf", "2e100"})
+    EXPECT_EQ(
+      error_of({"--inspect=a", "--scale=" + wrong}),
+      wrong.empty()
+        ? "command line: found --scale without a value; allowed: --scale "
+          "FACTOR"
+        : "command line: found --scale '" + wrong +
+            "'; allowed: a positive number, at most 1e100");
+  EXPECT_EQ(error_of({"--mesh-size=1", "m.prm"}),
+            "command line: found --mesh-size without --inspect; allowed: it "
+            "with --inspect PART");
+  EXPECT_EQ(error_of({"--inspect=a", "--restart=b"}),
+            "command line: found --restart with --inspect; allowed: one of "
+            "them");
+  EXPECT_EQ(error_of({"--inspect=a", "b.prm"}),
+            "command line: found 'b.prm' beside --inspect; allowed: --inspect "
+            "PART alone");
+}
+
 TEST(CommandLine, TakesAWordWithDashesAfterTheEndOfOptions)
 {
   const CommandLine result = parse_command_line({"--quiet", "--", "--m.prm"});
@@ -122,8 +179,10 @@ TEST(CommandLine, WantsOneModel)
 TEST(CommandLine, RejectsUnknownOptions)
 {
   const std::string allowed =
-    "; allowed: --help, --version, --print-parameters, --validate, --set, "
-    "--output-directory, --restart, --overwrite, --threads, --quiet";
+    "; allowed: --help, --version, --print-parameters, --validate, --estimate, "
+    "--inspect, --scale, --density, --mesh-size, --set, --output-directory, "
+    "--restart, "
+    "--overwrite, --threads, --quiet";
   EXPECT_EQ(error_of({"m.prm", "--thread", "2"}),
             "command line: found the unknown option '--thread'" + allowed +
               " (did you mean '--threads'?)");

@@ -145,8 +145,11 @@ TEST(Tolerance, OneStageHasTheOrderOne)
 
 
 // The soft pendulum, and one that is a thousand times as stiff, whose
-// vibrations the steps do not resolve. Measured errors / tolerances are 0.05 to
-// 0.4 with two stages, and 0.0005 to 0.1 with three.
+// vibrations the steps do not resolve. Measured errors / tolerances are 0.02 to
+// 0.4 with two stages, and 0.0005 to 0.1 with three. What the error of the
+// stiff one is below its bound depends on the phase of those vibrations, which
+// other rounding errors change: 100 times the tolerance gave 5 times the error
+// on one kind of processor and more than 10 times on another.
 TEST(Tolerance, BoundsTheErrorInProportion)
 {
   for (const std::string modulus : {"2.1e8", "2.1e11"})
@@ -191,7 +194,7 @@ TEST(Tolerance, BoundsTheErrorInProportion)
             }
           if (s == 2)
             {
-              EXPECT_LT(errors[2], 0.1 * errors[0]);
+              EXPECT_LT(errors[2], (modulus == "2.1e8" ? 0.1 : 1) * errors[0]);
             }
         }
     }

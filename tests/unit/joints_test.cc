@@ -408,7 +408,7 @@ TEST(Joints, AForkHoldsAnEyeByTheDistanceOfItsCheeks)
     body_parameters("eye",
                     "set Mesh = cylinder\n set Cylinder from = -0.15, 0, 0\n"
                     "set Cylinder to = 0.15, 0, 0\n"
-                    "set Cylinder radius = 0.1\n set Cells = 2, 2\n" +
+                    "set Cylinder radius = 0.1\n set Cells = 3, 2\n" +
                       hexahedra);
   const BodyParameters fork =
     body_parameters("fork",

@@ -27,9 +27,10 @@ namespace ACF
   counted(const unsigned long n, const std::string &noun);
 
   /**
-   * The line that shows how far a simulation is: simulated time, step size,
-   * iterations and time left. On a terminal it is rewritten in place a few
-   * times per second; elsewhere nothing is shown.
+   * The line that shows how far a simulation is: a bar, simulated time, step
+   * size, iterations, time left and the wall time for a simulated second. On a
+   * terminal it is rewritten in place a few times per second, cut to its width;
+   * elsewhere nothing is shown.
    */
   class Progress
   {
@@ -68,10 +69,16 @@ namespace ACF
 
   /**
    * One line, "acf-dealii: warning: MESSAGE.", in place of the line of the
-   * Progress if both are on terminals.
+   * Progress if both are on terminals. Here and in errors the first words are
+   * coloured if standard error is a terminal that has colours, and the
+   * variable NO_COLOR of the environment is empty.
    */
   void
   print_warning(std::ostream &stream, const std::string &message);
+
+  /** One line, "acf-dealii: MESSAGE". */
+  void
+  print_error(std::ostream &stream, const std::string &message);
 
   /** Whether standard output is a terminal. */
   bool

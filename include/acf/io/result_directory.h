@@ -26,6 +26,13 @@ namespace ACF
     keep
   };
 
+  /** Of what: each leaves the files of the other alone. */
+  enum class ResultKind
+  {
+    run,
+    inspection
+  };
+
   /**
    * Makes a folder for results, if it does not exist, and removes what an
    * interrupted program has left half-written.
@@ -36,7 +43,8 @@ namespace ACF
    */
   std::filesystem::path
   prepare_result_directory(const std::filesystem::path &directory,
-                           const EarlierResults earlier);
+                           const EarlierResults earlier,
+                           const ResultKind kind = ResultKind::run);
 } // namespace ACF
 
 #endif

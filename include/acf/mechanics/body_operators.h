@@ -165,7 +165,10 @@ namespace ACF
     memory_consumption() const;
   };
 
-  /** Assembles the operators of a body by quadrature, once. */
+  /**
+   * Assembles the operators of a body by quadrature, once. See theory (1.1),
+   * theory (1.2), theory (1.3), theory (1.4).
+   */
   BodyOperators
   assemble_body_operators(const BodyDiscretization &body,
                           const Material &material);

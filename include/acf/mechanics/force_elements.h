@@ -63,6 +63,7 @@ namespace ACF
    * and so the forces $Q\, \partial y / \partial s$ on the markers. y is the
    * distance of two mean positions (Q is then positive if it pushes), an angle
    * about an axis, or a component of a bushing's deformation.
+   * See theory (9.1).
    */
   class ForceElement
   {

@@ -85,7 +85,9 @@ namespace ACF
   SurfaceGeometry
   surface_geometry(const BodyDiscretization &body, const Surface &surface);
 
-  /** Mean position: $s(x) = \frac1A \int x\, dA$, m. */
+  /**
+   * Mean position: $s(x) = \frac1A \int x\, dA$, m. See theory (8.1).
+   */
   NodalFunctional
   surface_mean(const BodyDiscretization &body, const Surface &surface);
 
@@ -102,6 +104,7 @@ namespace ACF
    * Mean of a material direction d (unit vector in the reference state):
    * $s(x) = \frac1A \int (d \cdot J^+ (X - \bar X))\, x\, dA$,
    * the surface_moment() of $J^+ d$. For an affine motion x = F X it is F d.
+   * See theory (8.2).
    *
    * @pre surface_geometry().resolves(d)
    */

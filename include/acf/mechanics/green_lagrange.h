@@ -31,6 +31,7 @@ namespace ACF
    * exactly, 27 per hexahedron. Several cells at once fill the lanes of a
    * vector register; threads share the cells. Results do not depend on the
    * number of threads.
+   * See theory (4.1), theory (4.2).
    */
   class GreenLagrangeOperator
   {

@@ -117,6 +117,7 @@ namespace ACF
    * $-D^T \lambda$, $D = \partial y / \partial s$. Rows that constrain
    * positions are in m (multipliers in N), rows that constrain rotations in rad
    * (multipliers in N m). What it constrains, see make_joint().
+   * See theory (8.3).
    */
   class Joint
   {
@@ -183,6 +184,7 @@ namespace ACF
    * side, is zero; it is exact for small angles about the other axes. Rotations
    * blocked about two axes: the third axis, as a direction of one side, stays
    * perpendicular to two directions of the other one, for any angle about it.
+   * See theory (8.5).
    *
    * @throws InputError naming what is wrong and which bodies and surfaces exist
    */
@@ -193,6 +195,7 @@ namespace ACF
   /**
    * The angle by which the first side has turned about an axis relative to the
    * second one since the placement, in (-pi, pi], rad.
+   * See theory (8.7).
    */
   MarkerFunction
   relative_angle(MarkerSet &markers,
@@ -203,6 +206,7 @@ namespace ACF
   /**
    * Mean relative rotation of two sides about an axis, rad, exact for small
    * angles. @pre one side is a body
+   * See theory (8.6).
    */
   MarkerPolynomial
   relative_rotation(MarkerSet &markers,
@@ -214,6 +218,7 @@ namespace ACF
    * Distance of the mean positions along a direction that turns with the second
    * side, from the second to the first, m. The ground lies where the first
    * side is at the placement.
+   * See theory (8.4).
    */
   MarkerPolynomial
   relative_displacement(MarkerSet &markers,
@@ -231,6 +236,7 @@ namespace ACF
   /**
    * Where the first side is relative to the second one, in world axes; zero if
    * the second is the ground and at the placement.
+   * See theory (8.4).
    */
   MarkerExpression
   relative_position(MarkerSet &markers,

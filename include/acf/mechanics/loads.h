@@ -70,6 +70,7 @@ namespace ACF
    * - a pressure (Pa): $P_a \hat m = -p \int \phi_a N\, dA$.
    * Loads with fixed directions have $\hat m = R^T m$, those that follow the
    * body $\hat m = R_0^T m$ with its placement. Small strains are not seen.
+   * See theory (9.3).
    */
   class SurfaceLoad
   {

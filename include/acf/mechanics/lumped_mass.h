@@ -46,6 +46,7 @@ namespace ACF
    *     \dot d_k \cdot \dot d_l, \qquad
    *     E = \tfrac12 \mathrm{tr}(J) I - J \f]
    * for its inertia tensor J about the mean position.
+   * See theory (9.2).
    */
   struct LumpedMass
   {

@@ -111,6 +111,7 @@ namespace ACF
    *     = p, \qquad \Phi(S x, t) = 0 \f]
    * (paper Eq. (29)). Joints and force elements see the bodies through the
    * values s = S x of markers only. Constant after construction.
+   * See theory (10.1).
    */
   class MultibodySystem
   {
@@ -273,6 +274,7 @@ namespace ACF
                   const Eigen::VectorXd &law_reference,
                   const double load_factor = 1) const;
 
+    /** Derivatives at the markers, see theory (12.2). */
     MarkerLinearization
     linearize(const double t,
               const Eigen::VectorXd &s,
@@ -290,7 +292,7 @@ namespace ACF
     /**
      * Adds $-S^T D^T \lambda$, the forces of all joints on the nodes of a
      * body. Their sum over the nodes of a surface is the force of the joint on
-     * it; moments are pairs of such forces.
+     * it; moments are pairs of such forces. See theory (10.3).
      */
     void
     add_joint_forces(const unsigned int body,
@@ -305,15 +307,23 @@ namespace ACF
               NodalVector &force,
               const double load_factor = 1) const;
 
-    /** Gravity's potential is zero at the origin of the world. */
+    /**
+     * Gravity's potential is zero at the origin of the world. See theory
+     * (18.2).
+     */
     SystemEnergy
     energy(const SystemState &state) const;
 
-    /** Linear momentum, kg m/s. */
+    /**
+     * Linear momentum, kg m/s. See theory (18.2).
+     */
     Vector3
     momentum(const SystemState &state) const;
 
-    /** Angular momentum about the origin of the world, kg m^2/s. */
+    /**
+     * Angular momentum about the origin of the world, kg m^2/s. See theory
+     * (18.2).
+     */
     Vector3
     angular_momentum(const SystemState &state) const;
 

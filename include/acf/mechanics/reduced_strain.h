@@ -15,6 +15,7 @@ namespace ACF
   /**
    * Mean deformation gradient $\bar F = \sum_a x_a \otimes g_a$ (paper
    * Eq. (15)).
+   * See theory (2.1).
    */
   Matrix3
   mean_deformation_gradient(const BodyOperators &body,
@@ -32,6 +33,7 @@ namespace ACF
    * Angular velocity $R \dot\varphi$ of the frame of a body in the world,
    * rad/s,
    * $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes g_a$.
+   * See theory (7.1).
    * @return nothing if the body is turned inside out
    */
   std::optional<Vector3>
@@ -44,6 +46,7 @@ namespace ACF
    * Co-rotated displacement
    * $q_a = R^T (x_a - \bar x) - (X_a - \bar X)$ with the centres of mass
    * $\bar x$, $\bar X$, which removes the rigid translation.
+   * See theory (3.1).
    *
    * @param[out] displacement q, m; must have the size of @p positions
    */
@@ -59,6 +62,7 @@ namespace ACF
    * with the velocity $\bar v$ of the centre of mass and the spin
    * $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes g_a$.
    * It vanishes if the body moves rigidly, whatever its deformation.
+   * See theory (7.1).
    *
    * @param frame the rotation of the body at @p positions
    * @param velocities $v_a$, m/s
@@ -79,6 +83,7 @@ namespace ACF
    * where the second term is $f_{\delta R}$ of paper Eq. (28); for the polar
    * decomposition it is $-R\,(L c) \times g_a$ with
    * $L = (\mathrm{tr}(U) I - U)^{-1}$. Without a loop over elements.
+   * See theory (3.2), theory (3.3).
    *
    * @param positions $x_a$, m
    * @param measure how the rotation is found
@@ -97,6 +102,7 @@ namespace ACF
   /**
    * The forces of reduced_strain_force() at several positions, for which the
    * stiffness matrix is read once.
+   * See theory (3.2), theory (3.3).
    * @param scratch work space, for the next call
    * @return false if a mean deformation gradient has no rotation
    */
@@ -122,6 +128,7 @@ namespace ACF
    *
    * One product with A, and one with M if $\alpha \ne 0$. They do not give the
    * energy W.
+   * See theory (7.2).
    *
    * @param velocities $v_a$, m/s
    * @param mass_damping $\alpha$, 1/s

@@ -55,6 +55,7 @@ namespace ACF
    * round-off of the positions.
    *
    * Four products with A, without a loop over elements.
+   * See theory (13.6).
    *
    * @param positions $x_a$, m
    * @param measure how the rotation is found

@@ -26,6 +26,7 @@ namespace ACF
    * scaled gradients that are smaller than 1e-10. A sparse Cholesky
    * factorisation decides at first; eigenvalues are only computed if there are
    * any.
+   * See theory (8.8).
    *
    * @param gram $B B^T$ of the unscaled gradients
    */

@@ -36,6 +36,7 @@ namespace ACF
    * \f[ \varphi'_i = \Lambda_{ijk} H_{jk}, \quad
    *     \varphi''_i = \Lambda_{ijk} S_{jk}, \quad
    *     S = [\varphi']_\times ([\varphi']_\times R^T F - 2 H). \f]
+   * See theory (2.3).
    */
   struct BodyRotation
   {
@@ -57,6 +58,7 @@ namespace ACF
   /**
    * Rotation R of the polar decomposition $F = R U$. Its derivative is
    * $\delta\omega = (\mathrm{tr}(U) I - U)^{-1} \mathrm{axial}(H - H^T)$.
+   * See theory (2.4).
    *
    * @return nothing if $\det F \le 0$ (or not finite), where no proper rotation
    * exists
@@ -70,6 +72,7 @@ namespace ACF
    * perpendicular to the material directions $e_1$ and $e_2$. With
    * $a = F e_1$, $b = F e_2$: $R = (a/|a|,\ n \times a/|a|,\ n)$,
    * $n = a \times b / |a \times b|$.
+   * See theory (2.2).
    *
    * @return nothing if $\det F \le 0$ (or not finite)
    */

@@ -72,6 +72,7 @@ namespace ACF
    * polynomials: four points in a tetrahedron, 2 x 2 x 2 in a hexahedron.
    * Strains at the surface of a bent body are therefore larger than what is
    * found: by a factor of $\sqrt3$ with one hexahedron over its thickness.
+   * See theory (5.1), theory (5.2), theory (5.3), theory (5.4).
    *
    * @param positions $x_a$, m
    * @return nothing if the mean deformation gradient has no rotation

@@ -18,6 +18,7 @@ namespace ACF
 
   /**
    * $\sigma_v = \sqrt{\tfrac32 s : s}$ with the deviator s of a stress, Pa.
+   * See theory (3.5).
    */
   double
   von_mises_stress(const Symmetric3 &stress);
@@ -43,7 +44,8 @@ namespace ACF
    * \f[ \sigma = R\,(\det F)^{-1} F (\lambda\, \mathrm{tr}(E) I + 2 \mu E)
    *              F^T\,R^T. \f]
    * The strain is $R\,\varepsilon\,R^T$ or $R\,E\,R^T$: its components are
-   * along the axes of the world for a body that turns with R.
+   * along the axes of the world for a body that turns with R. See theory (3.4),
+   * theory (4.3).
    */
   class StressEvaluation
   {

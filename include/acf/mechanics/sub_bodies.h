@@ -33,6 +33,7 @@ namespace ACF
    * Make meshes and operators once for identical bodies, and divide bodies as
    * their entry 'Cut' says, see divide_mesh(). Parts are called "NAME 1" or
    * "NAME VOLUME".
+   * See theory (6.1).
    * @param directory where relative mesh file names start
    * @throws InputError if a mesh is wrong, or parts have the name of a body
    */

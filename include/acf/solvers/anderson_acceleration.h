@@ -24,6 +24,7 @@ namespace ACF
    * The norm is the sum over bodies and stages of the mean squares of the
    * nodes' increments relative to the length of the body. Multipliers follow
    * with the same coefficients.
+   * See theory (13.5).
    */
   class AndersonAcceleration
   {

@@ -30,6 +30,7 @@ namespace ACF
   /**
    * Radau IIA with 1 (implicit Euler), 2 or 3 stages, order 2 s - 1 (Hairer and
    * Wanner, Solving Ordinary Differential Equations II, Sec. IV.5).
+   * See theory (15.1).
    */
   ButcherTableau
   radau_iia(const unsigned int n_stages);
@@ -64,6 +65,7 @@ namespace ACF
     std::vector<Component> components;
   };
 
+  /** See theory (12.3). */
   StageDiagonalization
   diagonalize_stages(const ButcherTableau &tableau);
 
@@ -89,6 +91,7 @@ namespace ACF
     Eigen::MatrixXd increments;
   };
 
+  /** See theory (12.8). */
   StageTriangularization
   triangularize_stages(const ButcherTableau &tableau);
 
@@ -96,6 +99,7 @@ namespace ACF
    * Values $\ell_i(c)$ of the polynomials of degree s + 1 with the double root
    * 0 and the value 1 at $c_i$, zero at the other abscissae. Positions over a
    * step are $x_n + c \tau v_n + \sum_i \ell_i(c) Z_i$.
+   * See theory (18.1).
    */
   std::vector<double>
   stage_shape(const ButcherTableau &tableau, const double c);

@@ -65,6 +65,7 @@ namespace ACF
    * system, with $Y_U = K^{-1} U$,
    * \f[ s + R C R^T \phi + R S Y_U \zeta = R S K^{-1} r, \qquad
    *     (R S Y_U)^T \phi + (B^{-1} + U^T Y_U)\, \zeta = U^T K^{-1} r. \f]
+   * See theory (12.7), theory (16.3).
    */
   template <typename Number>
   class CoupledSystem

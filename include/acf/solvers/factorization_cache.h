@@ -24,6 +24,7 @@ namespace ACF
    * rotation (paper Eq. (32)): the columns $Y_{pj} = K^{-1} (w_p \otimes e_j)$
    * of the functionals and their compliance
    * $C_{pi,qj} = (w_p \otimes e_i)^T Y_{qj}$. Identical bodies share it.
+   * See theory (12.6).
    */
   template <typename Number>
   class JointedFactorization

@@ -68,6 +68,7 @@ namespace ACF
    * about the contraction, which is good enough inside an iteration that
    * corrects it. FactorPrecision::automatic tries that first, and factorises
    * again where it is not good enough.
+   * See theory (12.4).
    *
    * @tparam Number double or std::complex<double>
    */

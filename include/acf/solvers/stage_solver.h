@@ -50,6 +50,7 @@ namespace ACF
    * of Green and Lagrange R_i may turn each node with its material; then R A
    * R^T is no more than close to the tangent. Rotations and markers are frozen
    * by prepare().
+   * See theory (12.1).
    */
   class StageSolver
   {
@@ -87,10 +88,35 @@ namespace ACF
 
 
 
+  /** The shifted matrix $\sigma m \otimes I_3 + A$ of a body that a stage
+   * solver factorises. */
+  struct StageMatrix
+  {
+    /** $\sigma$, 1/s^2 */
+    std::complex<double> shift;
+
+    /** Whether the factorisation is one of real numbers. */
+    bool is_real;
+  };
+
+  /**
+   * All of them for a step size, s.
+   * @param one_step those of the OneStepStageSolver, otherwise of the
+   * DiagonalizedStageSolver
+   */
+  std::vector<StageMatrix>
+  stage_matrices(const Body &body,
+                 const ButcherTableau &tableau,
+                 const bool one_step,
+                 const double step_size);
+
+
+
   /**
    * Exact solution by diagonalisation $A_{RK}^{-2} = T D T^{-1}$: one complex
    * factorisation $(d/\tau^2) M + A$ for a conjugate pair, one real one for a
    * real eigenvalue.
+   * See theory (12.3), theory (12.5).
    */
   class DiagonalizedStageSolver : public StageSolver
   {
@@ -157,6 +183,7 @@ namespace ACF
    *     \tau^2 K \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
    * Damping enters each stage with the rate $1 / (\tau \sqrt{D_i})$ alone, and
    * K on the right is without changes of low rank.
+   * See theory (12.8).
    */
   class OneStepStageSolver : public StageSolver
   {

@@ -20,6 +20,7 @@ namespace ACF
    * and dampers at each stage. Bodies that are not linearised exactly have the
    * stiffness \f$R_i A R_i^T\f$ of a StageSolver. Rayleigh damping is
    * $C_i = \alpha M + \beta K_i$, without the derivative of the rotation in it.
+   * See theory (13.7).
    */
   class StageTangent
   {

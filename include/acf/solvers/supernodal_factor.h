@@ -32,6 +32,10 @@ namespace ACF
   class SupernodalFactor
   {
   public:
+    /** n_bytes() of the factor with a tree, without making it. */
+    static std::size_t
+    n_bytes(const EliminationTree &tree);
+
     /** @param n_threads that solve() uses */
     SupernodalFactor(const std::shared_ptr<const EliminationTree> &tree,
                      const unsigned int n_threads);

@@ -20,6 +20,7 @@ namespace ACF
    * the stiffness G of springs and of the multipliers of joints. Velocities
    * count as zero, and loads as constant: those that turn with a body have no
    * part in \f$K_T\f$.
+   * See theory (16.2).
    */
   class TangentSystem
   {

@@ -40,6 +40,7 @@ namespace ACF
    * Ends when the distance, predicted from the last contraction, is below 1e-12
    * of the length of each body (root mean square over the nodes), or does not
    * decrease any more below 1e-11.
+   * See theory (16.1), theory (16.4).
    */
   class EquilibriumSolver
   {

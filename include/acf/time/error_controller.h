@@ -25,6 +25,7 @@ namespace ACF
    * two points if what they need was allowed by several steps in a row: two if
    * there are factorisations for that size, three for two points and eight for
    * one if not, and twice as many each time a rise has been taken back at once.
+   * See theory (14.1).
    */
   class ErrorController
   {

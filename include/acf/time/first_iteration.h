@@ -17,6 +17,7 @@ namespace ACF
    * times as large for each of them. The measurement does not hold if the step
    * size or the linearisation is another one, or if $|\Delta Z^1|$ is more than
    * four times that of the last step: something new has happened.
+   * See theory (13.2).
    */
   class FirstIteration
   {

@@ -27,6 +27,7 @@ namespace ACF
    * With two stages and equal steps the estimate is
    * $\frac1{24} (Z_2 - 9 Z_1 + 9 \bar Z_1 - \bar Z_2)$ with the increments
    * $\bar Z$ of the earlier step.
+   * See theory (13.3), theory (13.4).
    *
    * @param step_sizes of the step, of the step before it, ..., and of one that
    * is not used but as the cause of the velocities after it, 0 if there was
@@ -48,6 +49,7 @@ namespace ACF
    * Estimates the error of the positions that a step adds, without a solve.
    * Vibrations that the steps do not resolve count with about their amplitude,
    * as their phase is lost.
+   * See theory (13.3), theory (13.4).
    */
   class LocalError
   {

@@ -82,6 +82,7 @@ namespace ACF
    * \f$(K_T + \sigma M)^{-1} (K_T - \omega^2 M)\, \phi\f$, with the inverse on
    * the motions that the constraints allow; \f$\omega^2 + \sigma\f$ has at most
    * this relative error, in practice its square.
+   * See theory (17.1), theory (17.2).
    *
    * @throws InputError if the system has too few unknowns for the number
    * @throws SimulationError if modes are not found or not accurate

@@ -14,6 +14,7 @@ namespace ACF
    * Radau IIA for the index-3 equations of a multibody system: a StageIteration
    * solves the StageEquations of each step, the last stage of which ends the
    * step.
+   * See theory (14.2).
    */
   class RadauStepper
   {
@@ -42,6 +43,7 @@ namespace ACF
     /**
      * The state at a time of the accepted step, from the collocation
      * polynomial.
+     * See theory (18.1).
      * @pre @p time lies in the last accepted step
      */
     SystemState

@@ -16,6 +16,7 @@ namespace ACF
    * \f[ \tau^{-2} (A_{RK}^{-2} \otimes M) Z + F(U, V) + B(U)^T \Lambda = P,
    *     \qquad \Phi(U_i, t_n + c_i \tau) = 0, \qquad
    *     V_i = v_n + \tau^{-1} \sum_j (A_{RK}^{-1})_{ij} Z_j . \f]
+   * See theory (11.1), theory (11.2), theory (11.3).
    */
   class StageEquations
   {

@@ -78,6 +78,7 @@ namespace ACF
    * tangent.
    *
    * A step is tried like this:
+   * See theory (13.1).
    * @code
    * iteration.start_step();
    * do

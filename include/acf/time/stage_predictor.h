@@ -25,6 +25,7 @@ namespace ACF
    *
    * Multipliers are extrapolated as the accelerations are,
    * $\Lambda = E \bar\Lambda$, and what this misses is predicted likewise.
+   * See theory (11.4), theory (11.5).
    */
   class StagePredictor
   {

@@ -52,6 +52,7 @@ namespace ACF
    * the step size h, that is what an implicit step would do with the forces of
    * the joints alone. Between positions and velocities comes the static
    * equilibrium, if asked for (EquilibriumSolver).
+   * See theory (10.2).
    *
    * @param step_size h, s; if zero, one that suits the bodies
    * @param log one line for each thing that was changed
