@@ -6,15 +6,11 @@
 
 #include <deal.II/base/utilities.h>
 
-#include <algorithm>
 #include <cctype>
-#include <charconv>
-#include <cmath>
-#include <iterator>
 #include <sstream>
-#include <unordered_map>
 #include <utility>
 
+#include "abaqus_lines.h"
 #include "abaqus_sets.h"
 
 // The format: "Input Syntax Rules" and the keywords of the Abaqus manual.
@@ -39,37 +35,6 @@ namespace ACF
                                                                "PARAMETER",
                                                                "SYSTEM",
                                                                "TRANSFORM"};
-
-
-
-    std::string
-    upper(std::string text)
-    {
-      for (char &c : text)
-        c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
-      return text;
-    }
-
-
-
-    // The fields of a line. Quotation marks keep commas.
-    std::vector<std::string>
-    split_line(const std::string &line)
-    {
-      std::vector<std::string> fields(1);
-      bool quoted = false;
-      for (const char c : line)
-        {
-          quoted ^= (c == '"');
-          if (c == ',' && !quoted)
-            fields.emplace_back();
-          else
-            fields.back() += c;
-        }
-      for (std::string &field : fields)
-        field = Utilities::trim(field);
-      return fields;
-    }
 
 
 
@@ -116,7 +81,7 @@ namespace ACF
 
       template <typename Number>
       Number
-      number(std::string field, const std::string &what) const;
+      number(const std::string &field, const std::string &what) const;
 
       std::size_t
       label(const std::string &field, const std::string &what) const;
@@ -138,8 +103,7 @@ namespace ACF
       const MeshSource &source;
       unsigned int n_line = 0;
 
-      std::string keyword;
-      std::map<std::string, std::string> parameters;
+      Keyword keyword;
 
       bool has_part = false, has_instance = false;
       std::string instance;
@@ -202,40 +166,24 @@ namespace ACF
     Reader::read_keyword(const std::string &line)
     {
       finish_element();
-      const std::vector<std::string> fields = split_line(line.substr(1));
-      keyword.clear();
-      std::istringstream words(upper(fields[0]));
-      for (std::string word; words >> word;)
-        keyword += (keyword.empty() ? "" : " ") + word;
-      parameters.clear();
-      for (std::size_t i = 1; i < fields.size(); ++i)
-        {
-          const auto equal = fields[i].find('=');
-          const std::string name =
-            upper(Utilities::trim(fields[i].substr(0, equal)));
-          std::string value = equal == std::string::npos
-                                ? ""
-                                : Utilities::trim(fields[i].substr(equal + 1));
-          if (value.size() > 1 && value.front() == '"' && value.back() == '"')
-            value = value.substr(1, value.size() - 2);
-          if (!name.empty() && !parameters.try_emplace(name, value).second)
-            fail("a second parameter " + in_quotes(name),
-                 "each parameter of a keyword once");
-        }
+      keyword = Keyword(line);
+      if (!keyword.repeated.empty())
+        fail("a second parameter " + in_quotes(keyword.repeated),
+             "each parameter of a keyword once");
       current_set     = nullptr;
       current_surface = nullptr;
       current_type    = nullptr;
 
-      if (keywords_that_change_meshes.count(keyword) > 0)
-        fail("the keyword *" + keyword,
+      if (keywords_that_change_meshes.count(keyword.name) > 0)
+        fail("the keyword *" + keyword.name,
              "files in which all nodes and elements are written out, in one "
              "system of coordinates");
-      if (parameters.count("INPUT") > 0 &&
-          (keyword == "NODE" || keyword == "ELEMENT" || keyword == "NSET" ||
-           keyword == "ELSET"))
-        fail("the parameter INPUT of *" + keyword,
+      if (keyword.has("INPUT") &&
+          (keyword.name == "NODE" || keyword.name == "ELEMENT" ||
+           keyword.name == "NSET" || keyword.name == "ELSET"))
+        fail("the parameter INPUT of *" + keyword.name,
              "files that contain all of their data");
-      if (keyword == "NODE")
+      if (keyword.name == "NODE")
         {
           const std::string system = upper(parameter("SYSTEM", false));
           if (!system.empty() && system != "R")
@@ -245,28 +193,28 @@ namespace ACF
           if (!name.empty())
             current_set = &set_of(contents.node_sets, name);
         }
-      else if (keyword == "ELEMENT")
+      else if (keyword.name == "ELEMENT")
         open_elements();
-      else if (keyword == "NSET")
+      else if (keyword.name == "NSET")
         open_set("NSET", contents.node_sets);
-      else if (keyword == "ELSET")
+      else if (keyword.name == "ELSET")
         open_set("ELSET", contents.element_sets);
-      else if (keyword == "SURFACE")
+      else if (keyword.name == "SURFACE")
         open_surface();
-      else if (keyword == "PART")
+      else if (keyword.name == "PART")
         {
           if (std::exchange(has_part, true))
             fail("a second *PART", "files with one part");
         }
-      else if (keyword == "INSTANCE")
+      else if (keyword.name == "INSTANCE")
         open_instance();
-      else if (keyword != "HEADING" && keyword != "END PART" &&
-               keyword != "ASSEMBLY" && keyword != "END ASSEMBLY" &&
-               keyword != "END INSTANCE")
+      else if (keyword.name != "HEADING" && keyword.name != "END PART" &&
+               keyword.name != "ASSEMBLY" && keyword.name != "END ASSEMBLY" &&
+               keyword.name != "END INSTANCE")
         {
-          if (keyword.empty())
+          if (keyword.name.empty())
             fail("a line without a keyword after '*'", "*NODE, *ELEMENT, ...");
-          ignored_keywords.insert("*" + shorten(keyword));
+          ignored_keywords.insert("*" + shorten(keyword.name));
         }
     }
 
@@ -277,7 +225,7 @@ namespace ACF
     {
       if (std::exchange(has_instance, true))
         fail("a second *INSTANCE", "files with one instance of one part");
-      if (parameters.count("LIBRARY") > 0)
+      if (keyword.has("LIBRARY"))
         fail("the parameter LIBRARY of *INSTANCE",
              "files that contain all of their data");
       instance = upper(parameter("NAME", true)) + ".";
@@ -289,7 +237,7 @@ namespace ACF
     Reader::open_set(const std::string &name, std::map<std::string, Set> &sets)
     {
       const std::string other = (name == "NSET" ? "ELSET" : "NSET");
-      if (parameters.count(other) > 0)
+      if (keyword.has(other))
         fail("the parameter " + other + " of *" + name,
              "sets of numbers and of other sets of the same kind");
       const std::string of = upper(parameter("INSTANCE", false));
@@ -297,7 +245,7 @@ namespace ACF
         fail("the instance " + in_quotes(of), "the instance of the file");
       current_set = &set_of(sets, parameter(name, true));
       kind        = &sets;
-      current_set->is_internal |= (parameters.count("INTERNAL") > 0);
+      current_set->is_internal |= (keyword.has("INTERNAL"));
     }
 
 
@@ -312,7 +260,7 @@ namespace ACF
           return;
         }
       for (const std::string name : {"COMBINE", "CROP", "REGION TYPE"})
-        if (parameters.count(name) > 0)
+        if (keyword.has(name))
           fail("the parameter " + name + " of *SURFACE",
                "surfaces of faces or of nodes");
       const std::string name = parameter("NAME", true);
@@ -351,21 +299,21 @@ namespace ACF
     void
     Reader::read_data(const std::vector<std::string> &fields)
     {
-      if (keyword == "NODE")
+      if (keyword.name == "NODE")
         read_node(fields);
-      else if (keyword == "ELEMENT" && current_type != nullptr)
+      else if (keyword.name == "ELEMENT" && current_type != nullptr)
         read_element(fields);
-      else if (keyword == "ELEMENT")
+      else if (keyword.name == "ELEMENT")
         contents.left_out_elements.insert(
           label(fields[0], "the number of an element"));
-      else if (keyword == "NSET" || keyword == "ELSET")
+      else if (keyword.name == "NSET" || keyword.name == "ELSET")
         read_members(fields);
       else if (current_surface != nullptr)
         read_surface(fields);
-      else if (keyword == "INSTANCE")
+      else if (keyword.name == "INSTANCE")
         fail("data of *INSTANCE, which move the part",
              "instances without translation and rotation");
-      else if (keyword.empty())
+      else if (keyword.name.empty())
         fail(in_quotes(fields[0]) + " before the first keyword",
              "an input file of Abaqus, which begins with a keyword *...");
     }
@@ -441,8 +389,9 @@ namespace ACF
     void
     Reader::read_members(const std::vector<std::string> &fields)
     {
-      const std::string what = (keyword == "NSET" ? "a node" : "an element");
-      if (parameters.count("GENERATE") > 0)
+      const std::string what =
+        (keyword.name == "NSET" ? "a node" : "an element");
+      if (keyword.has("GENERATE"))
         {
           std::vector<std::size_t> range;
           for (const std::string &field : fields)
@@ -521,20 +470,12 @@ namespace ACF
 
     template <typename Number>
     Number
-    Reader::number(std::string field, const std::string &what) const
+    Reader::number(const std::string &field, const std::string &what) const
     {
-      const std::string original = field;
-      if (!field.empty() && field[0] == '+')
-        field.erase(0, 1);
-      std::replace(field.begin(), field.end(), 'D', 'E');
-      std::replace(field.begin(), field.end(), 'd', 'e');
-      Number result            = 0;
-      const char *const last   = field.data() + field.size();
-      const auto [stop, error] = std::from_chars(field.data(), last, result);
-      if (error != std::errc() || stop != last ||
-          !std::isfinite(static_cast<double>(result)))
-        fail(in_quotes(original) + " instead of " + what, "a number");
-      return result;
+      const std::optional<Number> result = parse_number<Number>(field);
+      if (!result)
+        fail(in_quotes(field) + " instead of " + what, "a number");
+      return *result;
     }
 
 
@@ -554,9 +495,7 @@ namespace ACF
     std::string
     Reader::local(const std::string &field) const
     {
-      std::string name = field;
-      if (name.size() > 1 && name.front() == '"' && name.back() == '"')
-        name = name.substr(1, name.size() - 2);
+      std::string name = without_quotes(field);
       if (!instance.empty() &&
           upper(name.substr(0, instance.size())) == instance)
         name = name.substr(instance.size());
@@ -568,12 +507,12 @@ namespace ACF
     std::string
     Reader::parameter(const std::string &name, const bool is_required) const
     {
-      const auto found = parameters.find(name);
-      if (found != parameters.end() && !found->second.empty())
+      const auto found = keyword.parameters.find(name);
+      if (found != keyword.parameters.end() && !found->second.empty())
         return found->second;
-      if (is_required || found != parameters.end())
-        fail("*" + keyword + " without a value of the parameter " + name,
-             "*" + keyword + ", " + name + "=...");
+      if (is_required || found != keyword.parameters.end())
+        fail("*" + keyword.name + " without a value of the parameter " + name,
+             "*" + keyword.name + ", " + name + "=...");
       return "";
     }
 

@@ -70,7 +70,9 @@ TEST_F(MeshFiles, CurvedCylinderConverges)
             << n;
           // of fourth order, the straight ones of second
           if (n > 4)
-            EXPECT_LT(std::abs(curved_errors[i]), last_error[i] / 12) << n;
+            {
+              EXPECT_LT(std::abs(curved_errors[i]), last_error[i] / 12) << n;
+            }
           last_error[i] = std::abs(curved_errors[i]);
         }
       const double side = area(*curved, "side") / numbers::PI - 1;
