@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/input_file.h>
 #include <acf/base/parameter_patterns.h>
 #include <acf/mechanics/abaqus_file.h>
 
@@ -38,6 +39,11 @@ namespace ACF
 
 
 
+    const std::set<std::string> keywords_with_data =
+      {"NODE", "ELEMENT", "NSET", "ELSET", "SURFACE", "PART", "INSTANCE"};
+
+
+
     class Reader
     {
     public:
@@ -54,6 +60,14 @@ namespace ACF
       {
         throw source.error("line " + std::to_string(n_line) + ": " + found,
                            allowed);
+      }
+
+      // Stops if the bytes are no characters.
+      void
+      check_text(const std::string &text) const
+      {
+        if (find_non_text(text) != std::string::npos)
+          fail("a byte that is not text in UTF-8", "a text file in UTF-8");
       }
 
       void
@@ -148,7 +162,12 @@ namespace ACF
                 read_keyword(line);
             }
           else
-            read_data(split_line(line));
+            {
+              if (keyword.name.empty() ||
+                  keywords_with_data.count(keyword.name) > 0)
+                check_text(line);
+              read_data(split_line(line));
+            }
         }
       if (!continued.empty())
         read_keyword(continued.substr(0, continued.size() - 1));
@@ -167,6 +186,9 @@ namespace ACF
     {
       finish_element();
       keyword = Keyword(line);
+      // what is left out may have any bytes, but for its name
+      check_text(keywords_with_data.count(keyword.name) > 0 ? line
+                                                            : keyword.name);
       if (!keyword.repeated.empty())
         fail("a second parameter " + in_quotes(keyword.repeated),
              "each parameter of a keyword once");

@@ -281,6 +281,14 @@ TEST_F(MeshFiles, AbaqusErrors)
       {"line 13", "second surface"});
   set({"*"}, {"line 11", "without a keyword"});
 
+  // bytes that are no characters, where they would become names; elsewhere
+  // they do not matter
+  set({"*NSET, NSET=\xf0", "1"}, {"line 11", "UTF-8"});
+  set({"*ELSET, ELSET=a", "\xf0"}, {"line 12", "UTF-8"});
+  set({"*\xf0"}, {"line 11", "UTF-8"});
+  write("latin.inp", mesh + "** \xe4\n*MATERIAL, NAME=\xe4\n\xe4, 1\n");
+  EXPECT_NEAR(volume(*mesh_of("set Mesh = latin.inp", folder)), 0.5, 1e-14);
+
   // whatever is cut off
   for (std::size_t n = 0; n < mesh.size(); ++n)
     {
