@@ -209,7 +209,7 @@ namespace ACF
                       "Time between two lines of probes.csv; zero: every "
                       "step. Units: s.",
                       Patterns::Double(0));
-    vtu.add_parameters(prm);
+    fields.add_parameters(prm);
     prm.add_parameter("Checkpoint interval",
                       checkpoint_interval,
                       "Simulated time between two checkpoints, from which "

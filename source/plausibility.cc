@@ -124,7 +124,7 @@ namespace ACF
                                 "0 or an interval that makes at most " +
                                   format_number(limit)));
     };
-    check("VTU interval", model.output.vtu.interval, max_files, "files");
+    check("VTU interval", model.output.fields.interval, max_files, "files");
     check("Probe interval", model.output.probe_interval, max_rows, "lines");
     for (const JointParameters &joint : model.system.joints)
       if (model.time.end_time > longest_integral &&
@@ -156,7 +156,10 @@ namespace ACF
                    model.output.probe_interval,
                    end_time,
                    warnings);
-    add_interval("VTU interval", model.output.vtu.interval, end_time, warnings);
+    add_interval("VTU interval",
+                 model.output.fields.interval,
+                 end_time,
+                 warnings);
     return warnings;
   }
 

@@ -169,6 +169,7 @@ namespace ACF
     json["stress evaluations"]      = statistics.stress_evaluations;
     json["validity checks"]         = statistics.validity_checks;
     json["vtu files"]               = statistics.vtu_files;
+    json["hdf5 files"]              = statistics.hdf5_files;
     json["probe rows"]              = statistics.probe_rows;
     json["checkpoints"]             = statistics.checkpoints;
     json["restarts"]                = statistics.restarts;

@@ -7,10 +7,10 @@
 #include <acf/estimate.h>
 #include <acf/inspection.h>
 #include <acf/io/checkpoint.h>
+#include <acf/io/field_output.h>
 #include <acf/io/mode_output.h>
 #include <acf/io/probes.h>
 #include <acf/io/result_directory.h>
-#include <acf/io/vtu_output.h>
 #include <acf/mechanics/accuracy.h>
 #include <acf/model.h>
 #include <acf/plausibility.h>
@@ -136,13 +136,13 @@ namespace ACF
                                                     model.output.probe_interval,
                                                     directory,
                                                     statistics));
-      if (model.output.vtu.interval > 0)
+      if (model.output.fields.interval > 0)
         {
           std::unique_ptr<StressPeaks> peaks;
-          if (model.output.vtu.contain("peak von Mises stress"))
+          if (model.output.fields.contain("peak von Mises stress"))
             peaks = std::make_unique<StressPeaks>(system, statistics);
-          observers.add(std::make_unique<VtuOutput>(
-            system, directory, model.output.vtu, peaks.get(), statistics));
+          observers.add(std::make_unique<FieldOutput>(
+            system, directory, model.output.fields, peaks.get(), statistics));
           if (peaks) // later than the files, which contain no later times
             observers.add(std::move(peaks));
         }

@@ -5,8 +5,8 @@
 #define acf_model_h
 
 #include <acf/base/parameter_file.h>
+#include <acf/io/field_output.h>
 #include <acf/io/probes.h>
-#include <acf/io/vtu_output.h>
 #include <acf/time/modes.h>
 #include <acf/time/start.h>
 #include <acf/time/validity_monitor.h>
@@ -28,7 +28,7 @@ namespace ACF
     /** The same in wall time. */
     double checkpoint_wall_interval = 600;
 
-    VtuParameters vtu;
+    FieldOutputParameters fields;
 
     void
     add_parameters(ParameterHandler &prm);

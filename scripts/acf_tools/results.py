@@ -12,18 +12,22 @@ from acf_tools.command_line import InputError
 
 
 class Snapshots:
-    """Files of VTK and their times, in this order.
+    """Files with fields and their times, in this order.
 
-    The argument is a folder of results, a list (.pvd) or a file (.vtu).
+    The argument is a folder of results, a list (.pvd) or a file (.vtu). If
+    with_xdmf is true, the list may also be a .xdmf; the files are then objects
+    of the class Step.
     """
 
-    def __init__(self, name):
+    def __init__(self, name, with_xdmf=False):
         path = pathlib.Path(name)
         if path.is_dir():
-            if not (path / "solution.pvd").is_file():
-                raise InputError(f"{name}: the folder has no solution.pvd; "
+            lists = [path / f"solution{end}" for end in (".pvd", ".xdmf")]
+            found = [entry for entry in lists if entry.is_file()]
+            if not found:
+                raise InputError(f"{name}: the folder has no solution.pvd{' or .xdmf' * with_xdmf}; "
                                  "a run writes it if the entry 'Output/VTU interval' is not 0")
-            path = path / "solution.pvd"
+            path = found[0]
         elif not path.exists():
             raise InputError(f"{name}: there is no such file or folder")
         self.path = path
@@ -32,6 +36,11 @@ class Snapshots:
             self.times, self.files = [None], [path]
         elif path.suffix == ".pvd":
             self.times, self.files = read_list(path)
+        elif path.suffix == ".xdmf" and with_xdmf:
+            self.times, self.files = read_xdmf_list(path)
+        elif path.suffix == ".xdmf":
+            raise InputError(f"{path}: found results in XDMF, which only ParaView shows; allowed: "
+                             "VTU files, which a run writes with the entry 'Output/Format = VTU'")
         else:
             raise InputError(f"{name}: allowed: a folder of results, a file .pvd or a file .vtu")
 
@@ -60,6 +69,43 @@ def read_list(path):
         if not file.is_file():
             raise InputError(f"{path}: it names {file.name}, which is not there")
     return [time for time, _ in pairs], [file for _, file in pairs]
+
+
+class Step:
+    """A time of a list in XDMF: the elements Grid of its bodies, and the file of their fields."""
+
+    def __init__(self, folder, bodies):
+        self.bodies = bodies
+        names = [item.text.strip().partition(":")[0] for body in bodies
+                 for item in body.iter("DataItem")]
+        self.files = [folder / name for name in dict.fromkeys(names)]
+
+    def __str__(self):
+        return str(self.files[-1])  # points and cells come first
+
+    def arrays(self, centre):
+        """Counts of components of the arrays at the centre 'Node' or 'Cell' by their names."""
+        return {a.attrib["Name"]: int(a.find("DataItem").attrib["Dimensions"].split()[1])
+                for a in self.bodies[0].findall("Attribute") if a.attrib["Center"] == centre}
+
+
+def read_xdmf_list(path):
+    """Times and steps of a solution.xdmf."""
+    try:
+        grids = xml.etree.ElementTree.parse(path).getroot().findall("Domain/Grid/Grid")
+        times = [float(grid.find("Time").attrib["Value"]) for grid in grids]
+        steps = [Step(path.parent, grid.findall("Grid")) for grid in grids]
+        for step in steps:
+            step.arrays("Node")
+    except (xml.etree.ElementTree.ParseError, AttributeError, KeyError, ValueError,
+            IndexError) as error:
+        raise InputError(f"{path}: it is no list of acf-dealii in XDMF ({error})") from error
+    if not steps:
+        raise InputError(f"{path}: it names no file")
+    for file in (file for step in steps for file in step.files):
+        if not file.is_file():
+            raise InputError(f"{path}: it names {file.name}, which is not there")
+    return times, steps
 
 
 def read_probes(path):

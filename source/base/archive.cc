@@ -4,6 +4,7 @@
 #include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/base/files.h>
+#include <acf/base/hdf5_image.h>
 
 #include <zlib.h>
 
@@ -40,31 +41,6 @@ namespace ACF
       std::string block = text.str();
       block.resize(block_size - 1, ' ');
       return block + "\n";
-    }
-
-
-
-    // An image of a file in memory; a closed one cannot be asked for it.
-    H5::FileAccPropList
-    in_memory()
-    {
-      H5::FileAccPropList properties;
-      properties.setCore(1 << 20, false);
-      return properties;
-    }
-
-
-
-    std::string
-    image_of(H5::H5File &file)
-    {
-      file.flush(H5F_SCOPE_GLOBAL);
-      const ssize_t size = H5Fget_file_image(file.getId(), nullptr, 0);
-      std::string image(std::max<ssize_t>(size, 0), 0);
-      if (size < 0 ||
-          H5Fget_file_image(file.getId(), image.data(), image.size()) < 0)
-        throw H5::FileIException("H5Fget_file_image", "no image");
-      return image;
     }
 
 
@@ -115,24 +91,10 @@ namespace ACF
   void
   Archive::save(const std::filesystem::path &file, const Content &content)
   {
-    H5::Exception::dontPrint();
-    std::string image;
-    try
-      {
-        H5::H5File h5(file.string(),
-                      H5F_ACC_TRUNC,
-                      H5::FileCreatPropList::DEFAULT,
-                      in_memory());
-        Archive archive(h5.openGroup("/"), false);
-        content(archive);
-        image = image_of(h5);
-      }
-    catch (const H5::Exception &error)
-      {
-        throw SimulationError("The file '" + file.string() +
-                              "' cannot be written: HDF5 says '" +
-                              error.getDetailMsg() + "'.");
-      }
+    const std::string image = hdf5_image(file, [&](H5::H5File &h5) {
+      Archive archive(h5.openGroup("/"), false);
+      content(archive);
+    });
     write_file(file, text_block(image) + image, true);
   }
 
@@ -145,7 +107,7 @@ namespace ACF
     std::string image = checked_image(file);
     try
       {
-        const H5::FileAccPropList properties = in_memory();
+        const H5::FileAccPropList properties = hdf5_in_memory();
         if (H5Pset_file_image(properties.getId(), image.data(), image.size()) <
             0)
           throw H5::FileIException("H5Pset_file_image", "no image");

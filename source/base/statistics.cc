@@ -66,6 +66,7 @@ namespace ACF
     sum("stress evaluations", stress_evaluations);
     sum("validity checks", validity_checks);
     sum("vtu files", vtu_files);
+    sum("hdf5 files", hdf5_files);
     sum("probe rows", probe_rows);
     sum("checkpoints", checkpoints);
     sum("restarts", restarts);

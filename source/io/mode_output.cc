@@ -4,7 +4,7 @@
 #include <acf/base/console.h>
 #include <acf/base/files.h>
 #include <acf/io/mode_output.h>
-#include <acf/io/vtu_output.h>
+#include <acf/io/vtu_writer.h>
 
 #include <deal.II/base/utilities.h>
 
@@ -60,13 +60,13 @@ namespace ACF
     for (const Body &body : system.bodies())
       length = std::max(length, body.operators().length);
 
-    VtuWriter writer(system, state.positions, directory);
+    VtuWriter writer(system, state.positions, directory, "modes.pvd");
     for (unsigned int k = 0; k < modes.modes.size(); ++k)
       {
         const SystemVector &shape = modes.modes[k].shape;
         const double scale        = 0.1 * length / largest_displacement(shape);
-        std::vector<VtuField> fields = {{"displacement", dim, true},
-                                        {"mode_shape", dim, false}};
+        std::vector<OutputField> fields = {{{"displacement", dim, true}},
+                                           {{"mode_shape", dim, false}}};
         for (const NodalVector &values : shape)
           {
             fields[1].values.emplace_back(values.begin(), values.end());
@@ -76,8 +76,7 @@ namespace ACF
           }
         writer.write("mode-" + Utilities::int_to_string(k + 1, 4),
                      fields,
-                     k + 1,
-                     "modes.pvd");
+                     k + 1);
         ++statistics.vtu_files;
       }
   }

@@ -36,7 +36,7 @@ namespace ACF
         "inspection-(mesh|surfaces)\\.vtu(\\.tmp)?");
       static const std::regex run(
         "(probes\\.csv|statistics\\.json|used_parameters\\.prm|"
-        "solution\\.pvd|solution-[0-9]+\\.vtu|"
+        "solution\\.(pvd|xdmf)|solution-[0-9]+\\.(vtu|h5)|solution-mesh\\.h5|"
         "modes\\.csv|modes\\.pvd|mode-[0-9]+\\.vtu|"
         "checkpoint(-previous|-new)?\\.h5)(\\.tmp)?");
       std::vector<std::filesystem::path> files;

@@ -8,8 +8,8 @@
 #include <acf/base/exceptions.h>
 #include <acf/base/files.h>
 #include <acf/io/checkpoint.h>
+#include <acf/io/field_output.h>
 #include <acf/io/result_directory.h>
-#include <acf/io/vtu_output.h>
 
 #include <gtest/gtest.h>
 
@@ -319,22 +319,31 @@ TEST(ResultDirectory, KeepsEarlierResults)
   const auto fill   = [&] {
     for (const char *name : {"probes.csv",
                              "solution-000001.vtu",
+                             "solution-000001.h5",
+                             "solution-mesh.h5",
+                             "solution.xdmf",
                              "checkpoint.h5",
                              "mine.txt",
-                             "solution-000002.vtu.tmp"})
+                             "solution-000002.vtu.tmp",
+                             "solution-mesh.h5.tmp"})
       write_file(folder / name, name);
   };
   fill();
   EXPECT_EQ(prepare_result_directory(folder, EarlierResults::keep), "");
   EXPECT_TRUE(std::filesystem::exists(folder / "probes.csv"));
   EXPECT_FALSE(std::filesystem::exists(folder / "solution-000002.vtu.tmp"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "solution-mesh.h5.tmp"));
   for (const char *name : {"earlier-1", "earlier-2"})
     {
       fill();
       EXPECT_EQ(prepare_result_directory(folder, EarlierResults::set_aside),
                 folder / name);
-      for (const char *moved :
-           {"probes.csv", "solution-000001.vtu", "checkpoint.h5"})
+      for (const char *moved : {"probes.csv",
+                                "solution-000001.vtu",
+                                "solution-000001.h5",
+                                "solution-mesh.h5",
+                                "solution.xdmf",
+                                "checkpoint.h5"})
         {
           EXPECT_FALSE(std::filesystem::exists(folder / moved)) << moved;
           EXPECT_EQ(read_file(folder / name / moved), moved);
@@ -535,9 +544,9 @@ TEST(Restart, FilesThatWereNotListed)
   const auto folder = empty_folder("lists");
   const RecordedRun run(ParameterFile::from_text(blade, {}), 0.);
   Statistics statistics;
-  VtuParameters parameters;
+  FieldOutputParameters parameters;
   parameters.interval = 1;
-  VtuOutput output(run.system, folder, parameters, nullptr, statistics);
+  FieldOutput output(run.system, folder, parameters, nullptr, statistics);
   std::filesystem::create_directories(folder / "solution.pvd.tmp");
   EXPECT_THROW(output.observe(run.system.initial_state()), SimulationError);
   std::filesystem::remove_all(folder / "solution.pvd.tmp");

@@ -92,6 +92,7 @@ namespace ACF
 
     /** Files and rows written. */
     unsigned long vtu_files   = 0;
+    unsigned long hdf5_files  = 0;
     unsigned long probe_rows  = 0;
     unsigned long checkpoints = 0;
 

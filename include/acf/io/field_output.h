@@ -1,23 +1,33 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#ifndef acf_io_vtu_output_h
-#define acf_io_vtu_output_h
+#ifndef acf_io_field_output_h
+#define acf_io_field_output_h
 
 #include <acf/base/statistics.h>
+#include <acf/io/field_writer.h>
 #include <acf/mechanics/multibody_system.h>
 #include <acf/time/time_loop.h>
 
 #include <filesystem>
+#include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace ACF
 {
   /** What a model file says of the output for ParaView. */
-  struct VtuParameters
+  struct FieldOutputParameters
   {
+    enum class Format
+    {
+      vtu,
+      xdmf
+    };
+
+    /** Of the files with fields; those with modes are VTU files. */
+    Format format = Format::vtu;
+
     /** Time between files, s; 0: no files. */
     double interval = 0;
 
@@ -30,79 +40,6 @@ namespace ACF
     /** Declares the entries in the current subsection. */
     void
     add_parameters(ParameterHandler &prm);
-  };
-
-
-
-  /** Values at the nodes or in the cells of all bodies, for one file. */
-  struct VtuField
-  {
-    enum class Place
-    {
-      nodes,
-      cells
-    };
-
-    std::string name;
-    unsigned int n_components;
-    bool double_precision;
-    Place place = Place::nodes;
-
-    /** Of each body. */
-    std::vector<std::vector<double>> values = {};
-  };
-
-
-
-  /**
-   * Writes files for ParaView. A body is a piece of quadratic cells (10-node
-   * tetrahedra or 27-node hexahedra) that share their nodes; the value `body`
-   * of cells is its index. ParaView reads the files from version 5.10 on (VTK
-   * 9.1). A file gets its name when it is complete; before that, it ends in
-   * `.tmp`.
-   */
-  class VtuWriter
-  {
-  public:
-    /**
-     * @param points of the nodes of all bodies, m
-     * @param directory where to write; exists
-     */
-    VtuWriter(const MultibodySystem &system,
-              const SystemVector &points,
-              const std::filesystem::path &directory);
-
-    /**
-     * Writes NAME.vtu with fields, the first one as the vectors that warp, and
-     * makes it the last entry of a list of files with times.
-     * @throws SimulationError if a file cannot be written
-     */
-    void
-    write(const std::string &name,
-          const std::vector<VtuField> &fields,
-          const double time,
-          const std::string &list);
-
-    /**
-     * Saves or loads the entries of the list; loaded ones count if the file is
-     * there, and the list is written.
-     */
-    void
-    exchange(Archive &archive, const std::string &list);
-
-  private:
-    void
-    write_list(const std::string &list) const;
-
-    const MultibodySystem &system;
-    const std::filesystem::path directory;
-
-    /** Of each body: the XML elements that are the same in all files, points
-     * and cells, and the index of the body in each cell. */
-    std::vector<std::string> geometries;
-    std::vector<std::string> indices;
-
-    std::vector<std::pair<double, std::string>> times_and_names;
   };
 
 
@@ -150,7 +87,9 @@ namespace ACF
 
   /**
    * Writes `solution-000000.vtu`, `solution-000001.vtu`, ... with all bodies,
-   * and `solution.pvd` with the times of these files.
+   * and `solution.pvd` with the times of these files; or, as the parameters
+   * say, `solution-000000.h5`, ..., `solution-mesh.h5` and `solution.xdmf`, see
+   * VtuWriter and XdmfWriter.
    *
    * The points are the positions at the start; warped by `displacement` (m)
    * they are those at the file's time. Other values are those that the
@@ -170,7 +109,7 @@ namespace ACF
    * double precision, so that small strains survive large displacements; the
    * rest is single.
    */
-  class VtuOutput : public Observer
+  class FieldOutput : public Observer
   {
   public:
     /**
@@ -182,11 +121,11 @@ namespace ACF
      * this object
      * @pre parameters.interval > 0
      */
-    VtuOutput(const MultibodySystem &system,
-              const std::filesystem::path &directory,
-              const VtuParameters &parameters,
-              StressPeaks *peaks,
-              Statistics &statistics);
+    FieldOutput(const MultibodySystem &system,
+                const std::filesystem::path &directory,
+                const FieldOutputParameters &parameters,
+                StressPeaks *peaks,
+                Statistics &statistics);
 
     /**
      * @throws SimulationError if a file cannot be written, or a stress is asked
@@ -198,7 +137,8 @@ namespace ACF
     std::string
     name() const override
     {
-      return "vtu";
+      return parameters.format == FieldOutputParameters::Format::xdmf ? "xdmf"
+                                                                      : "vtu";
     }
 
     /**
@@ -211,17 +151,18 @@ namespace ACF
   private:
     /** Adds the stresses and strains that are asked for. */
     void
-    add_stress_fields(const SystemState &state, std::vector<VtuField> &fields);
+    add_stress_fields(const SystemState &state,
+                      std::vector<OutputField> &fields);
 
     const MultibodySystem &system;
-    const VtuParameters parameters;
+    const FieldOutputParameters parameters;
     StressPeaks *const peaks;
     Statistics &statistics;
 
     /** Of each body: nodal positions at the start, m. */
     const SystemVector initial_positions;
 
-    VtuWriter writer;
+    const std::unique_ptr<FieldWriter> writer;
     unsigned int n_files = 0;
   };
 } // namespace ACF
