@@ -147,8 +147,8 @@ namespace ACF
     if (!(length > 1e-30 && length < 1e30))
       throw InputError(parameters.section(),
                        "Mesh",
-                       "a body with a length of " + format_number(length) +
-                         " m",
+                       "'" + mesh.mesh + "', a body with a length of " +
+                         format_number(length) + " m",
                        "bodies between 1e-30 and 1e30 m");
     const double body_mass = constant_operators.mass;
     if (!std::isnormal(body_mass))

@@ -19,6 +19,13 @@ extern "C"
            "alloc_dealloc_mismatch=0:detect_leaks=0";
   }
 
+  // gmsh keeps what it has computed of its element types, such as prisms.
+  const char *
+  __lsan_default_suppressions()
+  {
+    return "leak:libgmsh.so\n";
+  }
+
   const char *
   __ubsan_default_options()
   {
