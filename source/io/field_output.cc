@@ -209,7 +209,10 @@ namespace ACF
                                           state.positions[b],
                                           state.time);
         ++statistics.stress_evaluations;
-        const auto nodal_values = evaluation.nodal_values();
+        if (with_von_mises)
+          largest.values.emplace_back();
+        const auto nodal_values = evaluation.nodal_values(
+          with_von_mises ? &largest.values.back() : nullptr);
         if (with_von_mises || with_peaks)
           von_mises.values.push_back(von_mises_stresses(nodal_values));
         if (with_peaks)
@@ -226,14 +229,11 @@ namespace ACF
             if (with_strain)
               append(strain.values.back(), value.strain);
           }
-        if (!with_von_mises && !with_stress)
-          continue;
-        largest.values.emplace_back();
-        cell_stress.values.emplace_back();
-        for (const auto &value : evaluation.cell_values())
+        if (with_stress)
           {
-            largest.values.back().push_back(value.largest_von_mises_stress);
-            append(cell_stress.values.back(), value.mean_stress);
+            cell_stress.values.emplace_back();
+            for (const Symmetric3 &mean : evaluation.cell_means())
+              append(cell_stress.values.back(), mean);
           }
       }
 

@@ -121,19 +121,27 @@ namespace ACF
 
 
   std::vector<StressAndStrain>
-  StressEvaluation::nodal_values() const
+  StressEvaluation::nodal_values(std::vector<double> *const largest) const
   {
     const BodyDiscretization &space = body.discretization();
     std::vector<StressAndStrain> result(space.n_nodes());
     std::vector<unsigned int> n_cells(space.n_nodes(), 0);
+    if (largest != nullptr)
+      largest->assign(space.mesh().triangulation().n_active_cells(), 0.);
     for_all_cells(
       Quadrature<dim>(space.scalar_element().get_unit_support_points()),
-      [&](const unsigned int, const auto &nodes, const auto &, const auto &at) {
+      [&](const unsigned int cell,
+          const auto &nodes,
+          const auto &,
+          const auto &at) {
         for (unsigned int i = 0; i < nodes.size(); ++i)
           {
             result[nodes[i]].stress += at[i].stress;
             result[nodes[i]].strain += at[i].strain;
             ++n_cells[nodes[i]];
+            if (largest != nullptr)
+              (*largest)[cell] =
+                std::max((*largest)[cell], von_mises_stress(at[i].stress));
           }
       });
     for (unsigned int a = 0; a < result.size(); ++a)
@@ -146,20 +154,12 @@ namespace ACF
 
 
 
-  std::vector<StressEvaluation::CellValues>
-  StressEvaluation::cell_values() const
+  std::vector<Symmetric3>
+  StressEvaluation::cell_means() const
   {
     const BodyDiscretization &space = body.discretization();
-    std::vector<CellValues> result(
+    std::vector<Symmetric3> result(
       space.mesh().triangulation().n_active_cells());
-    for_all_cells(
-      Quadrature<dim>(space.scalar_element().get_unit_support_points()),
-      [&](const unsigned int cell, const auto &, const auto &, const auto &at) {
-        for (const StressAndStrain &value : at)
-          result[cell].largest_von_mises_stress =
-            std::max(result[cell].largest_von_mises_stress,
-                     von_mises_stress(value.stress));
-      });
     const auto average = [&](const unsigned int cell,
                              const auto &,
                              const auto &weights,
@@ -168,9 +168,9 @@ namespace ACF
       for (unsigned int point = 0; point < at.size(); ++point)
         {
           volume += weights[point];
-          result[cell].mean_stress += weights[point] * at[point].stress;
+          result[cell] += weights[point] * at[point].stress;
         }
-      result[cell].mean_stress /= volume;
+      result[cell] /= volume;
     };
     if (space.mesh().is_simplex())
       for_all_cells(QGaussSimplex<dim>(2), average);

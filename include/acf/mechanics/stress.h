@@ -64,24 +64,20 @@ namespace ACF
     StressAndStrain
     at(const Matrix3 &gradient) const;
 
-    /** Of all nodes of the body, each the mean over the cells at the node, with
-     * equal weights. */
+    /**
+     * Of all nodes of the body, each the mean over the cells at the node, with
+     * equal weights.
+     * @param[out] largest if not null: of each cell, in the order of the mesh,
+     * the largest von Mises stress at its nodes, without averaging with other
+     * cells, Pa
+     */
     std::vector<StressAndStrain>
-    nodal_values() const;
+    nodal_values(std::vector<double> *const largest = nullptr) const;
 
-    /** Of all cells, in the order of the mesh. */
-    struct CellValues
-    {
-      /** Mean over the volume of the cell, Pa. */
-      Symmetric3 mean_stress;
-
-      /** Largest von Mises stress at the nodes of the cell, without averaging
-       * with other cells, Pa. */
-      double largest_von_mises_stress = 0;
-    };
-
-    std::vector<CellValues>
-    cell_values() const;
+    /** Stress of all cells, in the order of the mesh: the mean over the volume
+     * of the cell, Pa. */
+    std::vector<Symmetric3>
+    cell_means() const;
 
     /** q, m */
     const NodalVector &
