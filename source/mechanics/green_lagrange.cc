@@ -17,8 +17,6 @@ namespace ACF
 {
   namespace
   {
-    constexpr unsigned int batch_size = GreenLagrangeOperator::batch_size;
-
     // Batches, and nodes, that are worth a thread.
     constexpr std::size_t smallest_batches = 64;
     constexpr std::size_t smallest_nodes   = 2048;
