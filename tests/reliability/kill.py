@@ -71,6 +71,7 @@ def attack(program, name, settings, n_kills, check, rng):
             options = ["--overwrite"]
             # until the run is done, at most ten kills
             for _ in range(10):
+                before = time.monotonic()
                 process = start(program, settings, directory, *options)
                 by_term = rng.random() < 0.25
                 try:
@@ -79,6 +80,9 @@ def attack(program, name, settings, n_kills, check, rng):
                     process.send_signal(signal.SIGTERM if by_term else signal.SIGKILL)
                 messages = process.communicate()[1]
                 if process.returncode == 0:
+                    # the machine may have been busy with other work before
+                    if options == ["--overwrite"]:
+                        seconds = min(seconds, time.monotonic() - before)
                     break
                 n_hits += 1
                 check(process.returncode in (-signal.SIGKILL, -signal.SIGTERM) or
