@@ -12,14 +12,6 @@
 
 namespace ACF
 {
-  namespace
-  {
-    // Numbers of nodes or unknowns that are worth a thread.
-    constexpr std::size_t smallest_range = 4096;
-  } // namespace
-
-
-
   void
   run_tasks(const unsigned int n_tasks,
             const std::function<void(unsigned int)> &task)
@@ -47,11 +39,11 @@ namespace ACF
 
 
   unsigned int
-  n_ranges(const std::size_t n)
+  n_ranges(const std::size_t n, const std::size_t smallest)
   {
     return std::max<std::size_t>(
       1,
-      std::min<std::size_t>(n / smallest_range,
+      std::min<std::size_t>(n / smallest,
                             dealii::MultithreadInfo::n_threads()));
   }
 
@@ -59,9 +51,10 @@ namespace ACF
 
   void
   run_ranges(const std::size_t n,
-             const std::function<void(std::size_t, std::size_t)> &range)
+             const std::function<void(std::size_t, std::size_t)> &range,
+             const std::size_t smallest)
   {
-    const unsigned int n_parts = n_ranges(n);
+    const unsigned int n_parts = n_ranges(n, smallest);
     run_tasks(n_parts, [&](const unsigned int part) {
       range(n * part / n_parts, n * (part + 1) / n_parts);
     });

@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/parallel.h>
 #include <acf/mechanics/green_lagrange.h>
 
 #include <deal.II/base/memory_consumption.h>
-#include <deal.II/base/parallel.h>
 
 #include <deal.II/fe/fe_values.h>
+#include <deal.II/lac/vector_memory.h>
 
 #include <algorithm>
+
+#include "green_lagrange_kernels.h"
 
 namespace ACF
 {
   namespace
   {
-    constexpr unsigned int n_lanes = VectorizedArray<double>::size();
+    constexpr unsigned int batch_size = GreenLagrangeOperator::batch_size;
 
-    /** Batches, or blocks of nodes, that are worth a task. */
-    constexpr unsigned int grain = 64;
+    // Batches, and nodes, that are worth a thread.
+    constexpr std::size_t smallest_batches = 64;
+    constexpr std::size_t smallest_nodes   = 2048;
+
+    // Memory that calls leave to the next one. (Not one for each thread: while
+    // a thread waits for the parts of one call it may begin another one.)
+    using Scratch = GrowingVectorMemory<NodalVector>;
 
 
 
@@ -26,41 +34,120 @@ namespace ACF
     {
       return Vector3({x[0], x[1], x[2]});
     }
+
+
+
+    // The loops over a batch, for an instruction set.
+    struct BatchLoops
+    {
+      bool (*force)(const GreenLagrangeOperator::Geometry &,
+                    std::size_t,
+                    const double *,
+                    double *,
+                    double *);
+      void (*apply_tangent)(const GreenLagrangeOperator::Geometry &,
+                            std::size_t,
+                            const double *,
+                            const double *,
+                            double *);
+      void (*integrate_gradient)(const GreenLagrangeOperator::Geometry &,
+                                 std::size_t,
+                                 const double *,
+                                 double *,
+                                 double *);
+    };
+
+#define ACF_BATCH_LOOPS(name, attributes, Cells)                               \
+  attributes bool force_##name(                                                \
+    const GreenLagrangeOperator::Geometry &geometry,                           \
+    const std::size_t batch,                                                   \
+    const double *const x,                                                     \
+    double *const f,                                                           \
+    double *const energies)                                                    \
+  {                                                                            \
+    return Kernels::force<Cells>(geometry, batch, x, f, energies);             \
+  }                                                                            \
+  attributes void apply_tangent_##name(                                        \
+    const GreenLagrangeOperator::Geometry &geometry,                           \
+    const std::size_t batch,                                                   \
+    const double *const x,                                                     \
+    const double *const dx,                                                    \
+    double *const f)                                                           \
+  {                                                                            \
+    Kernels::apply_tangent<Cells>(geometry, batch, x, dx, f);                  \
+  }                                                                            \
+  attributes void integrate_gradient_##name(                                   \
+    const GreenLagrangeOperator::Geometry &geometry,                           \
+    const std::size_t batch,                                                   \
+    const double *const x,                                                     \
+    double *const integral,                                                    \
+    double *const volumes)                                                     \
+  {                                                                            \
+    Kernels::integrate_gradient<Cells>(geometry, batch, x, integral, volumes); \
+  }                                                                            \
+  constexpr BatchLoops loops_##name = {force_##name,                           \
+                                       apply_tangent_##name,                   \
+                                       integrate_gradient_##name};
+
+    ACF_BATCH_LOOPS(any, , Kernels::TwoCells)
+#if defined(__x86_64__)
+    ACF_BATCH_LOOPS(avx2, ACF_AVX2, Kernels::FourCells)
+    ACF_BATCH_LOOPS(avx512, ACF_AVX512, Kernels::EightCells)
+#endif
+#undef ACF_BATCH_LOOPS
+
+    const BatchLoops &
+    batch_loops()
+    {
+#if defined(__x86_64__)
+      if (present_processor() == Processor::avx512)
+        return loops_avx512;
+      if (present_processor() == Processor::avx2)
+        return loops_avx2;
+#endif
+      return loops_any;
+    }
   } // namespace
 
 
 
   GreenLagrangeOperator::GreenLagrangeOperator(const BodyDiscretization &body,
                                                const Material &material)
-    : lambda(material.lambda())
-    , mu(material.mu())
-    , n_nodes(body.n_nodes())
+    : n_nodes(body.n_nodes())
     , n_cells(body.mesh().triangulation().n_active_cells())
-    , n_batches((n_cells + n_lanes - 1) / n_lanes)
-    , n_shape_functions(body.scalar_element().n_dofs_per_cell())
+    , n_batches((n_cells + batch_size - 1) / batch_size)
   {
     const Quadrature<dim> quadrature =
       body.mesh().cell_quadrature(body.mesh().is_simplex() ? 2 : 4);
-    n_points = quadrature.size();
-    for (unsigned int q = 0; q < n_points; ++q)
-      for (unsigned int a = 0; a < n_shape_functions; ++a)
-        unit_gradients.push_back(
-          body.scalar_element().shape_grad(a, quadrature.point(q)));
+    const unsigned int n_shapes = body.scalar_element().n_dofs_per_cell();
+    geometry.lambda             = material.lambda();
+    geometry.mu                 = material.mu();
+    geometry.n_shape_functions  = n_shapes;
+    geometry.n_points           = quadrature.size();
+    geometry.n_jacobians = body.mesh().is_simplex() && !body.mesh().is_curved()
+                             ? 1
+                             : quadrature.size();
+    for (unsigned int q = 0; q < geometry.n_points; ++q)
+      for (unsigned int a = 0; a < n_shapes; ++a)
+        for (unsigned int i = 0; i < dim; ++i)
+          geometry.unit_gradients.push_back(
+            body.scalar_element().shape_grad(a, quadrature.point(q))[i]);
 
-    inverse_jacobians.resize(n_batches * n_points);
-    weights.resize(n_batches * n_points);
-    nodes.resize(n_batches * n_shape_functions * n_lanes);
+    geometry.inverse_jacobians.resize(geometry.jacobian_index(n_batches, 0));
+    geometry.weights.resize(n_batches * geometry.n_points * batch_size);
+    nodes.resize(n_batches * n_shapes * batch_size);
     FEValues<dim> values(body.mesh().mapping(),
                          body.scalar_element(),
                          quadrature,
                          update_inverse_jacobians | update_JxW_values);
-    std::vector<unsigned int> cell_nodes(n_shape_functions);
+    std::vector<unsigned int> cell_nodes(n_shapes);
     std::vector<unsigned int> n_cells_of_node(n_nodes);
     auto cell = body.dof_handler().begin_active();
-    for (unsigned int lane = 0; lane < n_batches * n_lanes; ++lane)
+    for (unsigned int c = 0; c < n_batches * batch_size; ++c)
       {
-        const bool is_cell       = lane < n_cells;
-        const unsigned int batch = lane / n_lanes;
+        const bool is_cell       = c < n_cells;
+        const unsigned int batch = c / batch_size;
+        const unsigned int lane  = c % batch_size;
         if (is_cell)
           {
             values.reinit(
@@ -68,20 +155,19 @@ namespace ACF
             body.get_nodes(cell, cell_nodes);
             ++cell;
           }
-        for (unsigned int q = 0; q < n_points; ++q)
+        for (unsigned int q = 0; q < geometry.n_jacobians; ++q)
+          for (unsigned int i = 0; i < dim; ++i)
+            for (unsigned int j = 0; j < dim; ++j)
+              geometry.inverse_jacobians[geometry.jacobian_index(batch, q) +
+                                         (dim * i + j) * batch_size + lane] =
+                values.inverse_jacobian(q)[i][j];
+        for (unsigned int q = 0; q < geometry.n_points; ++q)
+          geometry
+            .weights[(batch * geometry.n_points + q) * batch_size + lane] =
+            is_cell ? values.JxW(q) : 0.;
+        for (unsigned int a = 0; a < n_shapes; ++a)
           {
-            const auto &J = values.inverse_jacobian(q);
-            for (unsigned int i = 0; i < dim; ++i)
-              for (unsigned int j = 0; j < dim; ++j)
-                inverse_jacobians[batch * n_points + q][i][j][lane % n_lanes] =
-                  J[i][j];
-            weights[batch * n_points + q][lane % n_lanes] =
-              is_cell ? values.JxW(q) : 0.;
-          }
-        for (unsigned int a = 0; a < n_shape_functions; ++a)
-          {
-            nodes[(batch * n_shape_functions + a) * n_lanes + lane % n_lanes] =
-              cell_nodes[a];
+            nodes[(batch * n_shapes + a) * batch_size + lane] = cell_nodes[a];
             if (is_cell)
               ++n_cells_of_node[cell_nodes[a]];
           }
@@ -93,8 +179,9 @@ namespace ACF
     node_entries.resize(node_start.back());
     std::vector<unsigned int> next(node_start.begin(), node_start.end() - 1);
     for (unsigned int k = 0; k < nodes.size(); ++k)
-      if (k / (n_shape_functions * n_lanes) * n_lanes + k % n_lanes < n_cells)
-        node_entries[next[nodes[k]]++] = k;
+      if (const unsigned int lane = k % batch_size;
+          k / (n_shapes * batch_size) * batch_size + lane < n_cells)
+        node_entries[next[nodes[k]]++] = dim * (k - lane) + lane;
   }
 
 
@@ -103,82 +190,43 @@ namespace ACF
   GreenLagrangeOperator::gather(const NodalVector &x,
                                 const Vector3 &origin,
                                 const unsigned int batch,
-                                Values &values) const
+                                AlignedVector<double> &values) const
   {
-    values.resize_fast(n_shape_functions);
-    const unsigned int *const batch_nodes =
-      &nodes[batch * n_shape_functions * n_lanes];
-    for (unsigned int a = 0; a < n_shape_functions; ++a)
-      for (unsigned int lane = 0; lane < n_lanes; ++lane)
-        for (unsigned int i = 0; i < dim; ++i)
-          values[a][i][lane] =
-            x[dim * batch_nodes[a * n_lanes + lane] + i] - origin[i];
-  }
-
-
-
-  GreenLagrangeOperator::Matrix
-  GreenLagrangeOperator::gradient(const Values &values,
-                                  const unsigned int batch,
-                                  const unsigned int q) const
-  {
-    const Vector3 *const grad = &unit_gradients[q * n_shape_functions];
-    Matrix unit;
-    for (unsigned int a = 0; a < n_shape_functions; ++a)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          unit[i][j] += values[a][i] * grad[a][j];
-    return unit * inverse_jacobians[batch * n_points + q];
+    const unsigned int n = geometry.n_shape_functions;
+    values.resize_fast(n * dim * batch_size);
+    const unsigned int *const batch_nodes = &nodes[batch * n * batch_size];
+    for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int lane = 0; lane < batch_size; ++lane)
+        {
+          const double *const node =
+            x.begin() + dim * batch_nodes[a * batch_size + lane];
+          for (unsigned int i = 0; i < dim; ++i)
+            values[(dim * a + i) * batch_size + lane] = node[i] - origin[i];
+        }
   }
 
 
 
   void
-  GreenLagrangeOperator::add_divergence(const Matrix &P,
-                                        const unsigned int batch,
-                                        const unsigned int q,
-                                        Tensor<1, dim, Lanes> *result) const
-  {
-    const Vector3 *const grad = &unit_gradients[q * n_shape_functions];
-    const Matrix unit         = (weights[batch * n_points + q] * P) *
-                        transpose(inverse_jacobians[batch * n_points + q]);
-    for (unsigned int a = 0; a < n_shape_functions; ++a)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          result[a][i] += unit[i][j] * grad[a][j];
-  }
-
-
-
-  GreenLagrangeOperator::Symmetric
-  GreenLagrangeOperator::stress(const Symmetric &E) const
-  {
-    Symmetric S            = (2 * mu) * E;
-    const Lanes volumetric = lambda * trace(E);
-    for (unsigned int i = 0; i < dim; ++i)
-      S[i][i] += volumetric;
-    return S;
-  }
-
-
-
-  void
-  GreenLagrangeOperator::scatter(const Values &cell_values,
+  GreenLagrangeOperator::scatter(const NodalVector &cell_values,
                                  NodalVector &result) const
   {
-    const auto sum = [&](const unsigned int begin, const unsigned int end) {
-      for (unsigned int a = begin; a < end; ++a)
-        {
-          Vector3 value;
-          for (unsigned int k = node_start[a]; k < node_start[a + 1]; ++k)
+    run_ranges(
+      n_nodes,
+      [&](const std::size_t begin, const std::size_t end) {
+        const double *const values = cell_values.begin();
+        double *const sums         = result.begin();
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            double sum[dim] = {};
+            for (unsigned int k = node_start[a]; k < node_start[a + 1]; ++k)
+              for (unsigned int i = 0; i < dim; ++i)
+                sum[i] += values[node_entries[k] + i * batch_size];
             for (unsigned int i = 0; i < dim; ++i)
-              value[i] += cell_values[node_entries[k] / n_lanes][i]
-                                     [node_entries[k] % n_lanes];
-          for (unsigned int i = 0; i < dim; ++i)
-            result[dim * a + i] = value[i];
-        }
-    };
-    parallel::apply_to_subranges(0U, n_nodes, sum, n_lanes * grain);
+              sums[dim * a + i] = sum[i];
+          }
+      },
+      smallest_nodes);
   }
 
 
@@ -188,53 +236,41 @@ namespace ACF
                                NodalVector &force) const
   {
     AssertDimension(positions.size(), dim * n_nodes);
-    Values &cell_forces = scratch.get();
-    cell_forces.resize_fast(n_batches * n_shape_functions);
-    std::vector<double> energies(n_batches), determinants(n_batches);
-    const Vector3 origin = first_node(positions);
+    const unsigned int values_per_batch =
+      geometry.n_shape_functions * dim * batch_size;
+    Scratch memory;
+    const Scratch::Pointer cell_forces(memory);
+    cell_forces->reinit(std::size_t(n_batches) * values_per_batch, true);
+    AlignedVector<double> energies(n_batches * batch_size);
+    std::vector<char> is_valid(n_batches);
+    const Vector3 origin    = first_node(positions);
+    const BatchLoops &loops = batch_loops();
 
-    const auto integrate = [&](const unsigned int begin,
-                               const unsigned int end) {
-      Values x;
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          gather(positions, origin, batch, x);
-          Tensor<1, dim, Lanes> *const f =
-            &cell_forces[batch * n_shape_functions];
-          std::fill(f, f + n_shape_functions, Tensor<1, dim, Lanes>());
-          Lanes energy = 0., smallest = 1.;
-          for (unsigned int q = 0; q < n_points; ++q)
-            {
-              const Matrix F = gradient(x, batch, q);
-              Symmetric E    = symmetrize(transpose(F) * F);
-              for (unsigned int i = 0; i < dim; ++i)
-                E[i][i] -= 1.;
-              E *= 0.5;
-              const Symmetric S = stress(E);
-              energy += weights[batch * n_points + q] * (0.5 * (E * S));
-              smallest = std::min(smallest, determinant(F));
-              add_divergence(F * Matrix(S), batch, q, f);
-            }
-          energies[batch]     = 0;
-          determinants[batch] = 1;
-          for (unsigned int lane = 0; lane < n_lanes; ++lane)
-            {
-              energies[batch] += energy[lane];
-              // not a number is no positive one
-              if (!(smallest[lane] > 0))
-                determinants[batch] = 0;
-            }
-        }
-    };
-    parallel::apply_to_subranges(0U, n_batches, integrate, grain);
+    run_ranges(
+      n_batches,
+      [&](const std::size_t begin, const std::size_t end) {
+        AlignedVector<double> x;
+        for (std::size_t batch = begin; batch < end; ++batch)
+          {
+            gather(positions, origin, batch, x);
+            is_valid[batch] =
+              loops.force(geometry,
+                          batch,
+                          x.data(),
+                          cell_forces->begin() + batch * values_per_batch,
+                          &energies[batch * batch_size]);
+          }
+      },
+      smallest_batches);
     double energy = 0;
     for (unsigned int batch = 0; batch < n_batches; ++batch)
       {
-        if (determinants[batch] == 0)
+        if (!is_valid[batch])
           return {};
-        energy += energies[batch];
+        for (unsigned int lane = 0; lane < batch_size; ++lane)
+          energy += energies[batch * batch_size + lane];
       }
-    scatter(cell_forces, force);
+    scatter(*cell_forces, force);
     return energy;
   }
 
@@ -246,36 +282,32 @@ namespace ACF
                                        NodalVector &result) const
   {
     AssertDimension(positions.size(), dim * n_nodes);
-    Values &cell_forces = scratch.get();
-    cell_forces.resize_fast(n_batches * n_shape_functions);
-    const Vector3 origin = first_node(positions);
+    const unsigned int values_per_batch =
+      geometry.n_shape_functions * dim * batch_size;
+    Scratch memory;
+    const Scratch::Pointer cell_forces(memory);
+    cell_forces->reinit(std::size_t(n_batches) * values_per_batch, true);
+    const Vector3 origin    = first_node(positions);
+    const BatchLoops &loops = batch_loops();
 
-    const auto integrate = [&](const unsigned int begin,
-                               const unsigned int end) {
-      Values x, dx;
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          gather(positions, origin, batch, x);
-          gather(direction, Vector3(), batch, dx);
-          Tensor<1, dim, Lanes> *const f =
-            &cell_forces[batch * n_shape_functions];
-          std::fill(f, f + n_shape_functions, Tensor<1, dim, Lanes>());
-          for (unsigned int q = 0; q < n_points; ++q)
-            {
-              const Matrix F  = gradient(x, batch, q);
-              const Matrix dF = gradient(dx, batch, q);
-              Symmetric E     = symmetrize(transpose(F) * F);
-              for (unsigned int i = 0; i < dim; ++i)
-                E[i][i] -= 1.;
-              E *= 0.5;
-              const Matrix S(stress(E));
-              const Matrix dS(stress(symmetrize(transpose(F) * dF)));
-              add_divergence(dF * S + F * dS, batch, q, f);
-            }
-        }
-    };
-    parallel::apply_to_subranges(0U, n_batches, integrate, grain);
-    scatter(cell_forces, result);
+    run_ranges(
+      n_batches,
+      [&](const std::size_t begin, const std::size_t end) {
+        AlignedVector<double> x, dx;
+        for (std::size_t batch = begin; batch < end; ++batch)
+          {
+            gather(positions, origin, batch, x);
+            gather(direction, Vector3(), batch, dx);
+            loops.apply_tangent(geometry,
+                                batch,
+                                x.data(),
+                                dx.data(),
+                                cell_forces->begin() +
+                                  batch * values_per_batch);
+          }
+      },
+      smallest_batches);
+    scatter(*cell_forces, result);
   }
 
 
@@ -285,37 +317,43 @@ namespace ACF
                                      const NodeRotations &rotations,
                                      BlockNodeMatrix &matrix) const
   {
+    const double lambda = geometry.lambda, mu = geometry.mu;
     const Vector3 origin = first_node(positions);
-    const unsigned int n = n_shape_functions;
-    Values x;
-    // of one lane
-    std::vector<Vector3> grad(n);
+    const unsigned int n = geometry.n_shape_functions;
+    AlignedVector<double> x;
+    std::vector<Vector3> unit(geometry.n_points * n), grad(n);
+    for (unsigned int k = 0; k < unit.size(); ++k)
+      for (unsigned int i = 0; i < dim; ++i)
+        unit[k][i] = geometry.unit_gradients[dim * k + i];
     std::vector<Matrix3> blocks(n * n);
     for (unsigned int cell = 0; cell < n_cells; ++cell)
       {
-        const unsigned int batch = cell / n_lanes, lane = cell % n_lanes;
+        const unsigned int batch = cell / batch_size, lane = cell % batch_size;
         if (lane == 0)
           gather(positions, origin, batch, x);
         std::fill(blocks.begin(), blocks.end(), Matrix3());
-        for (unsigned int q = 0; q < n_points; ++q)
+        for (unsigned int q = 0; q < geometry.n_points; ++q)
           {
-            const Matrix F_lanes = gradient(x, batch, q);
-            const Matrix &J      = inverse_jacobians[batch * n_points + q];
             Matrix3 F, inverse;
             for (unsigned int i = 0; i < dim; ++i)
               for (unsigned int j = 0; j < dim; ++j)
-                {
-                  F[i][j]       = F_lanes[i][j][lane];
-                  inverse[i][j] = J[i][j][lane];
-                }
-            const double dV           = weights[batch * n_points + q][lane];
+                inverse[i][j] =
+                  geometry.inverse_jacobians[geometry.jacobian_index(batch, q) +
+                                             (dim * i + j) * batch_size + lane];
+            for (unsigned int a = 0; a < n; ++a)
+              {
+                grad[a] = unit[q * n + a] * inverse;
+                for (unsigned int i = 0; i < dim; ++i)
+                  F[i] += x[(dim * a + i) * batch_size + lane] * grad[a];
+              }
+            const double dV =
+              geometry
+                .weights[(batch * geometry.n_points + q) * batch_size + lane];
             SymmetricTensor<2, dim> E = 0.5 * symmetrize(transpose(F) * F) -
                                         0.5 * unit_symmetric_tensor<dim>();
             const SymmetricTensor<2, dim> S =
               lambda * trace(E) * unit_symmetric_tensor<dim>() + 2 * mu * E;
             const Matrix3 left_cauchy_green = F * transpose(F);
-            for (unsigned int a = 0; a < n; ++a)
-              grad[a] = unit_gradients[q * n + a] * inverse;
             for (unsigned int a = 0; a < n; ++a)
               {
                 const Vector3 F_a = F * grad[a], S_a = S * grad[a];
@@ -341,9 +379,9 @@ namespace ACF
           for (unsigned int b = 0; b < n; ++b)
             {
               const unsigned int node_a =
-                nodes[(batch * n + a) * n_lanes + lane];
+                nodes[(batch * n + a) * batch_size + lane];
               const unsigned int node_b =
-                nodes[(batch * n + b) * n_lanes + lane];
+                nodes[(batch * n + b) * batch_size + lane];
               matrix.add(node_a,
                          node_b,
                          transpose(rotations[node_a]) * blocks[a * n + b] *
@@ -358,48 +396,51 @@ namespace ACF
   GreenLagrangeOperator::node_gradients(const NodalVector &positions) const
   {
     AssertDimension(positions.size(), dim * n_nodes);
-    const Vector3 origin = first_node(positions);
-    AlignedVector<Matrix> integrals(n_batches);
-    AlignedVector<Lanes> volumes(n_batches);
-    const auto integrate = [&](const unsigned int begin,
-                               const unsigned int end) {
-      Values x;
-      for (unsigned int batch = begin; batch < end; ++batch)
-        {
-          gather(positions, origin, batch, x);
-          Matrix integral;
-          Lanes volume = 0.;
-          for (unsigned int q = 0; q < n_points; ++q)
-            {
-              const Lanes dV = weights[batch * n_points + q];
-              integral += dV * gradient(x, batch, q);
-              volume += dV;
-            }
-          integrals[batch] = integral;
-          volumes[batch]   = volume;
-        }
-    };
-    parallel::apply_to_subranges(0U, n_batches, integrate, grain);
+    constexpr unsigned int matrix_size = dim * dim * batch_size;
+    AlignedVector<double> integrals(std::size_t(n_batches) * matrix_size);
+    AlignedVector<double> volumes(n_batches * batch_size);
+    const Vector3 origin    = first_node(positions);
+    const BatchLoops &loops = batch_loops();
+    run_ranges(
+      n_batches,
+      [&](const std::size_t begin, const std::size_t end) {
+        AlignedVector<double> x;
+        for (std::size_t batch = begin; batch < end; ++batch)
+          {
+            gather(positions, origin, batch, x);
+            loops.integrate_gradient(geometry,
+                                     batch,
+                                     x.data(),
+                                     &integrals[batch * matrix_size],
+                                     &volumes[batch * batch_size]);
+          }
+      },
+      smallest_batches);
 
     std::vector<Matrix3> gradients(n_nodes);
-    const auto average = [&](const unsigned int begin, const unsigned int end) {
-      for (unsigned int a = begin; a < end; ++a)
-        {
-          double volume = 0;
-          for (unsigned int k = node_start[a]; k < node_start[a + 1]; ++k)
-            {
-              const unsigned int batch =
-                node_entries[k] / (n_shape_functions * n_lanes);
-              const unsigned int lane = node_entries[k] % n_lanes;
-              volume += volumes[batch][lane];
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int j = 0; j < dim; ++j)
-                  gradients[a][i][j] += integrals[batch][i][j][lane];
-            }
-          gradients[a] /= volume;
-        }
-    };
-    parallel::apply_to_subranges(0U, n_nodes, average, n_lanes * grain);
+    const unsigned int values_per_batch =
+      geometry.n_shape_functions * dim * batch_size;
+    run_ranges(
+      n_nodes,
+      [&](const std::size_t begin, const std::size_t end) {
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            double volume = 0;
+            for (unsigned int k = node_start[a]; k < node_start[a + 1]; ++k)
+              {
+                const std::size_t batch = node_entries[k] / values_per_batch;
+                const unsigned int lane = node_entries[k] % batch_size;
+                volume += volumes[batch * batch_size + lane];
+                for (unsigned int i = 0; i < dim; ++i)
+                  for (unsigned int j = 0; j < dim; ++j)
+                    gradients[a][i][j] +=
+                      integrals[batch * matrix_size +
+                                (dim * i + j) * batch_size + lane];
+              }
+            gradients[a] /= volume;
+          }
+      },
+      smallest_nodes);
     return gradients;
   }
 
@@ -408,9 +449,9 @@ namespace ACF
   std::size_t
   GreenLagrangeOperator::memory_consumption() const
   {
-    return MemoryConsumption::memory_consumption(unit_gradients) +
-           inverse_jacobians.memory_consumption() +
-           weights.memory_consumption() +
+    return MemoryConsumption::memory_consumption(geometry.unit_gradients) +
+           geometry.inverse_jacobians.memory_consumption() +
+           geometry.weights.memory_consumption() +
            MemoryConsumption::memory_consumption(nodes) +
            MemoryConsumption::memory_consumption(node_start) +
            MemoryConsumption::memory_consumption(node_entries);

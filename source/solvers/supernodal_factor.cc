@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/huge_pages.h>
 #include <acf/base/parallel.h>
 #include <acf/solvers/supernodal_factor.h>
 
@@ -134,7 +135,7 @@ namespace ACF
         longest_block = std::max(longest_block, block.n_rows);
         blocks.push_back(block);
       }
-    values.resize(n);
+    resize_in_huge_pages(values, n);
     partition =
       divide_tree(*tree, n_bytes() < smallest_parallel_factor ? 1 : n_threads);
     for (unsigned int s = 0; s < blocks.size(); ++s)

@@ -36,13 +36,34 @@ namespace ACF
     struct Vectors<double>
     {
       typedef double type __attribute__((vector_size(lanes * sizeof(double))));
+      typedef double half
+        __attribute__((vector_size(lanes / 2 * sizeof(double))));
+      typedef double quarter
+        __attribute__((vector_size(lanes / 4 * sizeof(double))));
     };
 
     template <>
     struct Vectors<float>
     {
       typedef float type __attribute__((vector_size(lanes * sizeof(float))));
+      typedef float half
+        __attribute__((vector_size(lanes / 2 * sizeof(float))));
+      typedef float quarter
+        __attribute__((vector_size(lanes / 4 * sizeof(float))));
     };
+
+    template <typename Real>
+    ACF_INLINE Real
+    sum_of_lanes(const typename Vectors<Real>::type &x)
+    {
+      const typename Vectors<Real>::half halves =
+        __builtin_shufflevector(x, x, 0, 1, 2, 3) +
+        __builtin_shufflevector(x, x, 4, 5, 6, 7);
+      const typename Vectors<Real>::quarter quarters =
+        __builtin_shufflevector(halves, halves, 0, 1) +
+        __builtin_shufflevector(halves, halves, 2, 3);
+      return quarters[0] + quarters[1];
+    }
 
     constexpr std::size_t
     round_up(const std::size_t n)
@@ -137,44 +158,74 @@ namespace ACF
 
 
 
-    // t <- L_jj^-1 t for the columns of a panel, or with the transpose
-    template <typename Real,
-              unsigned int n_planes,
-              unsigned int width,
-              bool transposed>
-    ACF_INLINE void
-    solve_triangle(const Real *triangle,
-                   const unsigned int v,
-                   const unsigned int j,
-                   const Work<Real> &t)
+    // The right-hand sides of the columns of a panel.
+    template <typename Real, unsigned int n_planes, unsigned int width>
+    struct PanelColumns
     {
       Real x[width][n_planes];
-      for (unsigned int c = 0; c < width; ++c)
-        for (unsigned int p = 0; p < n_planes; ++p)
-          x[c][p] = t.template plane<n_planes>(v, p)[j + c];
-      const Real *const L = triangle + width * n_planes;
-      if constexpr (transposed)
-        {
-          for (unsigned int c = width; c-- > 0;)
+
+      ACF_INLINE void
+      read(const Work<Real> &t, const unsigned int v, const unsigned int j)
+      {
+        ACF_UNROLL
+        for (unsigned int c = 0; c < width; ++c)
+          {
+            ACF_UNROLL
+            for (unsigned int p = 0; p < n_planes; ++p)
+              x[c][p] = t.template plane<n_planes>(v, p)[j + c];
+          }
+      }
+
+      ACF_INLINE void
+      write(const Work<Real> &t,
+            const unsigned int v,
+            const unsigned int j) const
+      {
+        ACF_UNROLL
+        for (unsigned int c = 0; c < width; ++c)
+          {
+            ACF_UNROLL
+            for (unsigned int p = 0; p < n_planes; ++p)
+              t.template plane<n_planes>(v, p)[j + c] = x[c][p];
+          }
+      }
+
+      // Entry (r, c) of a triangle.
+      static constexpr unsigned int
+      entry(const unsigned int r, const unsigned int c)
+      {
+        return (width + c * width - c * (c + 1) / 2 + r - c - 1) * n_planes;
+      }
+
+      // x <- L^-1 x
+      ACF_INLINE void
+      solve(const Real *const triangle)
+      {
+        ACF_UNROLL
+        for (unsigned int c = 0; c < width; ++c)
+          {
+            ACF_UNROLL
             for (unsigned int r = c + 1; r < width; ++r)
-              multiply_add<-1, n_planes>(
-                x[c],
-                L + (c * width - c * (c + 1) / 2 + r - c - 1) * n_planes,
-                x[r]);
-        }
-      else
-        {
-          for (unsigned int c = 0; c < width; ++c)
-            for (unsigned int r = c + 1; r < width; ++r)
-              multiply_add<-1, n_planes>(
-                x[r],
-                L + (c * width - c * (c + 1) / 2 + r - c - 1) * n_planes,
-                x[c]);
-        }
-      for (unsigned int c = 0; c < width; ++c)
-        for (unsigned int p = 0; p < n_planes; ++p)
-          t.template plane<n_planes>(v, p)[j + c] = x[c][p];
-    }
+              multiply_add<-1, n_planes>(x[r], triangle + entry(r, c), x[c]);
+          }
+      }
+
+      // x <- L^-T x, by rows from the last one on: the number that was found
+      // last meets all that need it at once.
+      ACF_INLINE void
+      solve_transposed(const Real *const triangle)
+      {
+        ACF_UNROLL
+        for (unsigned int k = 1; k < width; ++k)
+          {
+            ACF_UNROLL
+            for (unsigned int c = 0; c < width - k; ++c)
+              multiply_add<-1, n_planes>(x[c],
+                                         triangle + entry(width - k, c),
+                                         x[width - k]);
+          }
+      }
+    };
 
 
 
@@ -190,30 +241,36 @@ namespace ACF
     {
       using Vector = typename Vectors<Real>::type;
 
-      Real x[n_vectors][width][n_planes];
+      PanelColumns<Real, n_planes, width> columns[n_vectors];
+      ACF_UNROLL
       for (unsigned int v = 0; v < n_vectors; ++v)
         {
-          solve_triangle<Real, n_planes, width, false>(values, v, j, t);
-          for (unsigned int c = 0; c < width; ++c)
-            for (unsigned int p = 0; p < n_planes; ++p)
-              x[v][c][p] = t.template plane<n_planes>(v, p)[j + c];
+          columns[v].read(t, v, j);
+          columns[v].solve(values);
+          columns[v].write(t, v, j);
         }
       const Vector *L = reinterpret_cast<const Vector *>(
         values + triangle_size(width, n_planes));
       for (unsigned int row = first_vector_row(j, width); row < n_rows;
            row += lanes, L += width * n_planes)
-        for (unsigned int v = 0; v < n_vectors; ++v)
-          {
-            Vector sum[n_planes];
-            for (unsigned int p = 0; p < n_planes; ++p)
-              sum[p] = *reinterpret_cast<const Vector *>(
-                t.template plane<n_planes>(v, p) + row);
-            for (unsigned int c = 0; c < width; ++c)
-              multiply_add<-1, n_planes>(sum, L + c * n_planes, x[v][c]);
-            for (unsigned int p = 0; p < n_planes; ++p)
-              *reinterpret_cast<Vector *>(t.template plane<n_planes>(v, p) +
-                                          row) = sum[p];
-          }
+        {
+          ACF_UNROLL
+          for (unsigned int v = 0; v < n_vectors; ++v)
+            {
+              Vector sum[n_planes];
+              for (unsigned int p = 0; p < n_planes; ++p)
+                sum[p] = *reinterpret_cast<const Vector *>(
+                  t.template plane<n_planes>(v, p) + row);
+              ACF_UNROLL
+              for (unsigned int c = 0; c < width; ++c)
+                multiply_add<-1, n_planes>(sum,
+                                           L + c * n_planes,
+                                           columns[v].x[c]);
+              for (unsigned int p = 0; p < n_planes; ++p)
+                *reinterpret_cast<Vector *>(t.template plane<n_planes>(v, p) +
+                                            row) = sum[p];
+            }
+        }
     }
 
 
@@ -232,37 +289,57 @@ namespace ACF
 
       const Vector *const L = reinterpret_cast<const Vector *>(
         values + triangle_size(width, n_planes));
-      const unsigned int first = first_vector_row(j, width);
+      const unsigned int first         = first_vector_row(j, width);
+      const unsigned int n_row_vectors = (round_up(n_rows) - first) / lanes;
       for (unsigned int v = 0; v < n_vectors; ++v)
         {
-          Vector sum[width][n_planes] = {};
-          const Vector *entry         = L;
-          for (unsigned int row = first; row < n_rows;
-               row += lanes, entry += width * n_planes)
+          Vector sum[width][n_planes];
+          ACF_UNROLL
+          for (unsigned int c = 0; c < width; ++c)
             {
+              ACF_UNROLL
+              for (unsigned int p = 0; p < n_planes; ++p)
+                sum[c][p] = Vector{};
+            }
+          // From the last number to the first, as the panels are: the processor
+          // fetches in advance what is read in one direction.
+          for (unsigned int k = n_row_vectors; k-- > 0;)
+            {
+              const unsigned int row    = first + lanes * k;
+              const Vector *const entry = L + k * width * n_planes;
               Vector x[n_planes];
               for (unsigned int p = 0; p < n_planes; ++p)
                 x[p] = *reinterpret_cast<const Vector *>(
                   t.template plane<n_planes>(v, p) + row);
-              for (unsigned int c = 0; c < width; ++c)
-                multiply_add<1, n_planes>(sum[c], entry + c * n_planes, x);
+              ACF_UNROLL
+              for (unsigned int c = width; c > 0; --c)
+                {
+                  Vector b[n_planes];
+                  ACF_UNROLL
+                  for (unsigned int p = n_planes; p > 0; --p)
+                    b[p - 1] = entry[(c - 1) * n_planes + p - 1];
+                  multiply_add<1, n_planes>(sum[c - 1], b, x);
+                }
             }
+          PanelColumns<Real, n_planes, width> columns;
+          columns.read(t, v, j);
+          ACF_UNROLL
           for (unsigned int c = 0; c < width; ++c)
             {
-              Real x[n_planes], total[n_planes];
+              Real total[n_planes];
+              ACF_UNROLL
               for (unsigned int p = 0; p < n_planes; ++p)
-                {
-                  x[p]     = t.template plane<n_planes>(v, p)[j + c];
-                  total[p] = 0;
-                  for (unsigned int i = 0; i < lanes; ++i)
-                    total[p] -= sum[c][p][i];
-                }
+                total[p] = -sum_of_lanes<Real>(sum[c][p]);
               // 1 / D
-              multiply_add<1, n_planes>(total, values + c * n_planes, x);
+              multiply_add<1, n_planes>(total,
+                                        values + c * n_planes,
+                                        columns.x[c]);
+              ACF_UNROLL
               for (unsigned int p = 0; p < n_planes; ++p)
-                t.template plane<n_planes>(v, p)[j + c] = total[p];
+                columns.x[c][p] = total[p];
             }
-          solve_triangle<Real, n_planes, width, true>(values, v, j, t);
+          columns.solve_transposed(values);
+          columns.write(t, v, j);
         }
     }
 

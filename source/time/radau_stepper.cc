@@ -42,19 +42,36 @@ namespace ACF
 
 
 
+  bool
+  RadauStepper::extrapolates() const
+  {
+    return parameters.extrapolates && !history.steps.empty();
+  }
+
+
+
   void
   RadauStepper::predict(const SystemState &state)
   {
-    if (!history.steps.empty())
-      predictor.start_step(history, equations.step_size());
+    if (!extrapolates())
+      {
+        for (SystemVector &stage : equations.increments)
+          for (NodalVector &Z : stage)
+            Z = 0;
+        for (Eigen::VectorXd &lambda : equations.multipliers)
+          lambda = state.multipliers;
+      }
+    else
+      {
+        predictor.start_step(history, equations.step_size());
+        for (unsigned int b = 0; b < system.bodies().size(); ++b)
+          predictor.predict(history, b, equations.increments);
+        predictor.predict(history, equations.multipliers);
+      }
+    if (!parameters.extrapolates)
+      return;
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
-        if (history.steps.empty())
-          for (SystemVector &stage : equations.increments)
-            stage[b] = 0;
-        else
-          predictor.predict(history, b, equations.increments);
-
         const Vector3 spin = body_spin(system.bodies()[b].operators(),
                                        system.bodies()[b].rotation_measure(),
                                        state.positions[b],
@@ -72,11 +89,6 @@ namespace ACF
           for (unsigned int i = 0; i < tableau.n_stages(); ++i)
             equations.increments[i][b] = turning[i][b];
       }
-    if (history.steps.empty())
-      for (Eigen::VectorXd &lambda : equations.multipliers)
-        lambda = state.multipliers;
-    else
-      predictor.predict(history, equations.multipliers);
   }
 
 
@@ -203,7 +215,10 @@ namespace ACF
                                             prediction_error(b, straight);
     if (!history.steps.empty())
       {
-        predictor.accept(history, equations.increments, equations.multipliers);
+        if (parameters.extrapolates)
+          predictor.accept(history,
+                           equations.increments,
+                           equations.multipliers);
         const double ratio = equations.step_size() / history.steps[0].size;
         const double order = local_error_order(tableau);
         expected_error =

@@ -96,6 +96,14 @@ namespace ACF
       "comparison real one-step matrices in the manner of the paper, which "
       "need more iterations. Units: none.");
     prm.declare_entry(
+      "Starting values",
+      "extrapolated",
+      Patterns::Selection("extrapolated|zero"),
+      "Where the Newton iteration of a step starts: at increments that are "
+      "extrapolated from the steps before, or for comparison at zero, that is "
+      "at motion without acceleration, which needs more iterations. Units: "
+      "none.");
+    prm.declare_entry(
       "Factor precision",
       "automatic",
       Patterns::Selection("automatic|single|double"),
@@ -110,6 +118,9 @@ namespace ACF
     });
     prm.add_action("Stage matrices", [this](const std::string &value) {
       one_step_matrices = (value == "one-step");
+    });
+    prm.add_action("Starting values", [this](const std::string &value) {
+      extrapolates = (value == "extrapolated");
     });
   }
 

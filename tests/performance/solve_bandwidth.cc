@@ -5,12 +5,13 @@
 // comma-separated values. A solve reads the factor twice, forward and backward;
 // nothing else is of its size. The streaming bandwidth is that of the sum of an
 // array that is larger than any cache, measured before each solve. Factors that
-// fit into a cache may pass it. Bodies: the
-// blade of the pendulum (prm/pendulum) and a cube, tetrahedra; the complex
-// matrix of two stages for steps of 1 ms. Figures are medians.
+// fit into a cache may pass it. Bodies: the blade of the pendulum
+// (prm/pendulum) and a cube, tetrahedra; the complex matrix of two stages for
+// steps of 1 ms. Figures are medians.
 //
 // Usage: solve_bandwidth [--quick | THREADS]
 
+#include <acf/base/huge_pages.h>
 #include <acf/model.h>
 
 #include <deal.II/base/multithread_info.h>
@@ -72,9 +73,11 @@ namespace
   {
   public:
     StreamingBandwidth(const std::size_t n_bytes, const unsigned int n_threads)
-      : values(n_bytes / sizeof(double), 1.)
-      , n_threads(n_threads)
-    {}
+      : n_threads(n_threads)
+    {
+      resize_in_huge_pages(values, n_bytes / sizeof(double));
+      values.fill(1.);
+    }
 
     /** Bytes per second. */
     double
@@ -96,7 +99,7 @@ namespace
     }
 
   private:
-    std::vector<double> values;
+    AlignedVector<double> values;
     const unsigned int n_threads;
   };
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/parallel.h>
 #include <acf/mechanics/green_lagrange.h>
 
 #include <deal.II/base/multithread_info.h>
@@ -229,4 +230,33 @@ TEST(GreenLagrange, ThreadsChangeNothing)
   const NodalVector two = force_at(law, x);
   MultithreadInfo::set_thread_limit(n_threads);
   EXPECT_EQ(one, two);
+}
+
+// Bodies that share an operator: a thread that waits for its part of one call
+// may begin another one.
+TEST(GreenLagrange, CallsAtTheSameTimeDoNotMeet)
+{
+  Random random;
+  const Example example("box",
+                        generate_box(Point<dim>(0, 0, 0),
+                                     Point<dim>(1, 0.3, 0.2),
+                                     {{8, 4, 3}},
+                                     ReferenceCells::Tetrahedron));
+  const GreenLagrangeOperator law(example.discretization, test_material());
+  constexpr unsigned int n_calls = 40;
+  std::vector<NodalVector> positions, alone, together;
+  for (unsigned int k = 0; k < n_calls; ++k)
+    {
+      positions.push_back(deformed(example, random));
+      alone.push_back(force_at(law, positions.back()));
+      together.emplace_back(positions.back().size());
+    }
+  const auto n_threads = MultithreadInfo::n_threads();
+  MultithreadInfo::set_thread_limit(2);
+  run_tasks(n_calls, [&](const unsigned int k) {
+    law.force(positions[k], together[k]);
+  });
+  MultithreadInfo::set_thread_limit(n_threads);
+  for (unsigned int k = 0; k < n_calls; ++k)
+    EXPECT_EQ(alone[k], together[k]) << "call " << k;
 }

@@ -275,6 +275,28 @@ TEST(TimeIntegration, OneStepMatricesGiveTheSameSolutionWithMoreIterations)
 
 
 
+TEST(TimeIntegration, StartingValuesOfZeroGiveTheSameSolution)
+{
+  RecordedRun predicted(swinging_block(), 0.1, options(2, 0.01, 0.3));
+  predicted.run();
+  auto overrides = options(2, 0.01, 0.3);
+  overrides.push_back("Time integration/Starting values=zero");
+  RecordedRun from_zero(swinging_block(), 0.1, overrides);
+  from_zero.run();
+
+  EXPECT_LT(nodal_difference(predicted.last().positions[0],
+                             from_zero.last().positions[0]),
+            1e-12);
+  EXPECT_GT(from_zero.statistics.newton_iterations,
+            predicted.statistics.newton_iterations);
+  std::cout << predicted.statistics.newton_iterations
+            << " iterations with predictions, "
+            << from_zero.statistics.newton_iterations << " from zero"
+            << std::endl;
+}
+
+
+
 // Times that are not ends of steps are interpolated with the collocation
 // polynomial; the end of the simulation need not be an end of a step either.
 TEST(TimeIntegration, DenseOutput)

@@ -19,13 +19,18 @@ namespace ACF
   run_tasks(const unsigned int n_tasks,
             const std::function<void(unsigned int)> &task);
 
+  /** Numbers of nodes or unknowns that are worth a thread. */
+  constexpr std::size_t smallest_range = 4096;
+
   /**
    * Calls range(begin, end) for parts of [0, n), in parallel: one for each
    * thread, fewer where n is small.
+   * @param smallest what is worth a thread
    */
   void
   run_ranges(const std::size_t n,
-             const std::function<void(std::size_t, std::size_t)> &range);
+             const std::function<void(std::size_t, std::size_t)> &range,
+             const std::size_t smallest = smallest_range);
 
   /**
    * Sum of what sum(begin, end) returns for the parts of run_ranges(), in their
@@ -38,7 +43,7 @@ namespace ACF
 
   /** How many parts run_ranges() makes. */
   unsigned int
-  n_ranges(const std::size_t n);
+  n_ranges(const std::size_t n, const std::size_t smallest = smallest_range);
 
 
 

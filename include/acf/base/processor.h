@@ -7,6 +7,13 @@
 // Inlined into functions for several instruction sets; so without lambdas.
 #define ACF_INLINE inline __attribute__((always_inline))
 
+// For loops with few and known rounds, so that their arrays stay in registers.
+#if defined(__clang__)
+#  define ACF_UNROLL _Pragma("unroll")
+#else
+#  define ACF_UNROLL _Pragma("GCC unroll 16")
+#endif
+
 // Attributes of a function for an instruction set.
 #if defined(__x86_64__)
 #  define ACF_AVX2 __attribute__((target("avx2,fma")))

@@ -8,8 +8,6 @@
 #include <acf/mechanics/node_rotations.h>
 
 #include <deal.II/base/aligned_vector.h>
-#include <deal.II/base/thread_local_storage.h>
-#include <deal.II/base/vectorization.h>
 
 #include <optional>
 #include <vector>
@@ -28,9 +26,9 @@ namespace ACF
    * the small-strain stiffness A.
    *
    * A loop over quadrature points: four per tetrahedron, which integrate A
-   * exactly, 27 per hexahedron. Several cells at once fill the lanes of a
-   * vector register; threads share the cells. Results do not depend on the
-   * number of threads.
+   * exactly, 27 per hexahedron. A batch of eight cells at once fills the
+   * registers of the processor, with functions for its instruction set; threads
+   * share the batches. Results do not depend on the number of threads.
    * See theory (4.1), theory (4.2).
    */
   class GreenLagrangeOperator
@@ -76,65 +74,64 @@ namespace ACF
     std::size_t
     memory_consumption() const;
 
-  private:
-    using Lanes     = VectorizedArray<double>;
-    using Matrix    = Tensor<2, dim, Lanes>;
-    using Symmetric = SymmetricTensor<2, dim, Lanes>;
-    using Values    = AlignedVector<Tensor<1, dim, Lanes>>;
+    /** Cells that are integrated at once. */
+    static constexpr unsigned int batch_size = 8;
 
-    /** Positions or displacements at the nodes of a batch of cells. */
+    /** What the integrals need of the cells; those beyond the last one repeat
+     * it without weight. */
+    struct Geometry
+    {
+      double lambda;
+      double mu;
+      unsigned int n_shape_functions;
+      unsigned int n_points;
+
+      /** One for all points of straight tetrahedra. */
+      unsigned int n_jacobians;
+
+      /** Of the shape functions on the unit cell, [q][a][i]. */
+      std::vector<double> unit_gradients;
+
+      /** Inverse Jacobians, 1/m, [batch][q][i][j][cell]. */
+      AlignedVector<double> inverse_jacobians;
+
+      /** dV, m^3, [batch][q][cell]. */
+      AlignedVector<double> weights;
+
+      /** Of the first entry of an inverse Jacobian. */
+      std::size_t
+      jacobian_index(const std::size_t batch, const unsigned int q) const
+      {
+        return dim * dim * batch_size *
+               (batch * n_jacobians + (n_jacobians == 1 ? 0 : q));
+      }
+    };
+
+  private:
+    /** Positions relative to an origin, or displacements, at the nodes of a
+     * batch of cells, [a][i][cell]. */
     void
     gather(const NodalVector &x,
            const Vector3 &origin,
            const unsigned int batch,
-           Values &values) const;
+           AlignedVector<double> &values) const;
 
-    /** $\sum_a x_a \otimes \nabla\phi_a$ at a quadrature point. */
-    Matrix
-    gradient(const Values &values,
-             const unsigned int batch,
-             const unsigned int q) const;
-
-    /** Adds $P\, \nabla\phi_a$ dV of a quadrature point to the cells' nodes. */
+    /** Adds the values of all cells, [batch][a][i][cell], at the nodes. */
     void
-    add_divergence(const Matrix &P,
-                   const unsigned int batch,
-                   const unsigned int q,
-                   Tensor<1, dim, Lanes> *result) const;
+    scatter(const NodalVector &cell_values, NodalVector &result) const;
 
-    /** $\lambda\, \mathrm{tr}(E)\, I + 2 \mu E$ */
-    Symmetric
-    stress(const Symmetric &E) const;
-
-    /** Adds the values of all cells at the nodes. */
-    void
-    scatter(const Values &cell_values, NodalVector &result) const;
-
-    double lambda;
-    double mu;
+    Geometry geometry;
     unsigned int n_nodes;
     unsigned int n_cells;
     unsigned int n_batches;
-    unsigned int n_shape_functions;
-    unsigned int n_points;
 
-    /** Of the shape functions on the unit cell, [q][a]. */
-    std::vector<Vector3> unit_gradients;
-
-    /** Inverse Jacobians and dV, [batch][q]. */
-    AlignedVector<Matrix> inverse_jacobians;
-    AlignedVector<Lanes> weights;
-
-    /** [batch][a][lane]; lanes beyond the last cell repeat it without weight.
-     */
+    /** [batch][a][cell] */
     std::vector<unsigned int> nodes;
 
     /** For each node where the values of its cells are: compressed rows of
-     * (batch * n_shape_functions + a) * n_lanes + lane. */
+     * indices of [batch][a][0][cell]. */
     std::vector<unsigned int> node_start;
     std::vector<unsigned int> node_entries;
-
-    mutable Threads::ThreadLocalStorage<Values> scratch;
   };
 } // namespace ACF
 

@@ -55,6 +55,10 @@ namespace ACF
     exchange(Archive &archive);
 
   private:
+    /** Whether there are steps, and parameters that let them predict. */
+    bool
+    extrapolates() const;
+
     /**
      * Predicts the stages of the step (StagePredictor); those of the first step
      * by a motion without acceleration.

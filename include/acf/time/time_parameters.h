@@ -45,6 +45,10 @@ namespace ACF
     /** Real one-step matrices as in the paper instead of the exact ones. */
     bool one_step_matrices = false;
 
+    /** Whether the iteration starts at increments that are extrapolated from
+     * steps before, or at zero. */
+    bool extrapolates = true;
+
     void
     add_parameters(ParameterHandler &prm);
 

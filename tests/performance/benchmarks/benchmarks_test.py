@@ -11,7 +11,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 
 from common import distance, growth_exponent
-from work_precision import ratios, time_at_error
+from work_precision import check_names, is_wanted, ratios, time_at_error
 
 
 def row(method, error, time, strain="reduced", **more):
@@ -62,6 +62,27 @@ class Ratios(unittest.TestCase):
                    if r["model"] == "pendulum of steel"]
         self.assertAlmostEqual(ratio["ratio of steps"], 50.)
         self.assertIn("error of the model 'pendulum'", ratio["note"])
+
+
+class Names(unittest.TestCase):
+    class Bench:
+        quick = False
+        models = ["slider-crank"]
+        methods = ["2 stages Green-Lagrange", "explicit"]
+
+    def test_methods_with_and_without_a_strain(self):
+        check_names(self.Bench)
+        self.assertTrue(is_wanted(self.Bench, "2 stages", "Green-Lagrange"))
+        self.assertFalse(is_wanted(self.Bench, "2 stages", "reduced"))
+        self.assertTrue(is_wanted(self.Bench, "explicit", "reduced"))
+        self.assertFalse(is_wanted(self.Bench, "CalculiX", "Green-Lagrange"))
+
+    def test_unknown_names_are_errors(self):
+        class Wrong(self.Bench):
+            methods = ["4 stages"]
+
+        with self.assertRaises(SystemExit):
+            check_names(Wrong)
 
 
 class Numbers(unittest.TestCase):

@@ -57,7 +57,7 @@ class Bench:
     """Where the programs are, where results go, and how carefully to measure."""
 
     def __init__(self, build, output, threads=1, repetitions=3, quick=False, longest=600.,
-                 models=()):
+                 models=(), methods=()):
         self.build = pathlib.Path(build)
         self.output = pathlib.Path(output)
         self.threads = threads
@@ -65,6 +65,7 @@ class Bench:
         self.quick = quick
         self.longest = longest
         self.models = models
+        self.methods = methods
         self.output.mkdir(parents=True, exist_ok=True)
         count = str(threads)
         self.environment = dict(os.environ, OPENBLAS_NUM_THREADS=count, OMP_NUM_THREADS=count,

@@ -20,6 +20,7 @@ STYLES = {
     "tolerance, 3 stages": ("limegreen", "v"),
     "one-step matrices": ("tab:orange", "D"),
     "scheme of the paper": ("saddlebrown", "D"),
+    "scheme of the paper, extrapolated": ("peru", "D"),
     "conventional": ("tab:red", "X"),
     "conventional, 1 iteration": ("lightcoral", "x"),
     "CalculiX": ("tab:purple", "*"),

@@ -63,7 +63,7 @@ def models(quick):
         return {"pendulum": dict(pendulum("1, 4, 1", 0.01, intervals=10), fractions=[2],
                                  reference=4, conventional=[2], calculix=[1], explicit=True)}
     return {
-        "pendulum": dict(pendulum("1, 40, 2", 0.5), fractions=[1, 2, 5, 10, 20],
+        "pendulum": dict(pendulum("1, 40, 2", 0.5), fractions=[0.5, 1, 2, 5, 10, 20],
                          reference=50, conventional=[2, 5, 10, 20],
                          calculix=[2, 5, 10], explicit=True),
         "pendulum of steel": dict(pendulum("1, 40, 2", 0.5, "2.1e11"),
@@ -88,10 +88,12 @@ def variants(quick):
     """Name, strain, settings, and whether the tolerance takes the place of the step size."""
     matrices = "Time integration/Stage matrices"
     precision = "Time integration/Factor precision"
+    paper = {matrices: "one-step", precision: "double", NEWTON: 1e-12}
     yield "2 stages", "reduced", {}, False
     yield "one-step matrices", "reduced", {matrices: "one-step"}, False
     yield ("scheme of the paper", "reduced",
-           {matrices: "one-step", precision: "double", NEWTON: 1e-12}, False)
+           {**paper, "Time integration/Starting values": "zero"}, False)
+    yield "scheme of the paper, extrapolated", "reduced", paper, False
     yield "2 stages", "Green-Lagrange", {}, False
     yield "tolerance, 2 stages", "reduced", {}, True
     if quick:
@@ -104,6 +106,28 @@ def variants(quick):
     yield "tolerance, 3 stages", "reduced", {STAGES: 3}, True
     yield "tolerance, 2 stages", "Green-Lagrange", {}, True
     yield "tolerance, 3 stages", "Green-Lagrange", {STAGES: 3}, True
+
+
+IMPLICIT_BASELINES = (("conventional", "conventional", []),
+                      ("conventional, 1 iteration", "conventional", ["--least-iterations", 1]),
+                      ("CalculiX", "calculix", []))
+
+BASELINES = ("one-step matrices", "scheme of the paper", "scheme of the paper, extrapolated",
+             *(name for name, _, _ in IMPLICIT_BASELINES), "explicit")
+
+
+def check_names(bench):
+    """Methods and models that are asked for exist."""
+    names = {name for name, _, _, _ in variants(False)} | set(BASELINES)
+    names |= {f"{name} {strain}" for name in names for strain in ("reduced", "Green-Lagrange")}
+    for some, known in ((bench.models, models(bench.quick)), (bench.methods, names)):
+        for name in some:
+            if name not in known:
+                raise SystemExit(f"unknown name '{name}'; names are {', '.join(sorted(known))}")
+
+
+def is_wanted(bench, name, strain):
+    return not bench.methods or name in bench.methods or f"{name} {strain}" in bench.methods
 
 
 TOLERANCES = ["1e-3", "1e-4", "1e-5", "1e-6", "1e-7"]
@@ -172,6 +196,8 @@ class Study:
 
     def run_program(self):
         for name, strain, changes, by_tolerance in variants(self.bench.quick):
+            if not is_wanted(self.bench, name, strain):
+                continue
             values = ([("tolerance", t) for t in TOLERANCES] if by_tolerance else
                       [("step size", f) for f in self.model["fractions"]])
             for control, value in values:
@@ -192,12 +218,10 @@ class Study:
                     self.bench.say(f"{self.name}, {name}, {control} {value}: {error}")
 
     def run_implicit_baselines(self):
-        for name, program, key, options in (
-                ("conventional", "conventional", "conventional", []),
-                ("conventional, 1 iteration", "conventional", "conventional",
-                 ["--least-iterations", 1]),
-                ("CalculiX", "calculix", "calculix", [])):
-            for fraction in self.model[key]:
+        for name, program, options in IMPLICIT_BASELINES:
+            if not is_wanted(self.bench, name, "Green-Lagrange"):
+                continue
+            for fraction in self.model[program]:
                 settings = self.settings("Green-Lagrange", self.step_size(fraction))
                 settings[NEWTON] = 1e-8
                 try:
@@ -209,6 +233,8 @@ class Study:
     def run_explicit(self):
         """To the end if that does not take too long, else a fiftieth of the time."""
         for strain in ("reduced", "Green-Lagrange"):
+            if not is_wanted(self.bench, "explicit", strain):
+                continue
             part = 0.02 if not self.bench.quick else 0.5
             settings = self.settings(strain, self.step_size(1))
             short = dict(settings)
@@ -245,10 +271,6 @@ def time_at_error(points, error):
             part = math.log(error / e0) / math.log(e1 / e0)
             return math.exp((1 - part) * math.log(t0) + part * math.log(t1))
     return best[-1][1]
-
-
-BASELINES = ("one-step matrices", "scheme of the paper", "conventional", "conventional, 1 iteration", "CalculiX",
-             "explicit")
 
 
 def ratios(rows):
