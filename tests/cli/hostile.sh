@@ -32,9 +32,9 @@ subsection Time integration
 end
 END
 
-# No run may take longer than this.
+# No run may take longer than this; sanitizers make the program slower.
 run() {
-  timeout 20 "$acf" "$@" >stdout 2>stderr
+  timeout $((20 * ${ACF_TEST_SLOWNESS:-1})) "$acf" "$@" >stdout 2>stderr
   status=$?
 }
 

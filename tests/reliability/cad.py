@@ -7,6 +7,7 @@ Each must be accepted, or rejected with exit status 2 and one line that names th
 gmsh and the CAD kernel do with it, crashes included.
 """
 
+import os
 import random
 import re
 import subprocess
@@ -36,8 +37,8 @@ subsection Time integration
 end
 """
 
-# Longer than this is a hang, s.
-PATIENCE = 60
+# Longer than this is a hang, s; sanitizers make the program slower.
+PATIENCE = 60 * int(os.environ.get("ACF_TEST_SLOWNESS", "1"))
 
 TROUBLE = (b"0", b"-1", b"1e308", b"nan", b"2147483648", b"99999999999999999999", b"")
 NUMBER = re.compile(rb"-?\d+(\.\d*)?([eE][-+]?\d+)?")

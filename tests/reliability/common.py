@@ -10,6 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import xml.etree.ElementTree
 
 TOP = pathlib.Path(__file__).resolve().parents[2]
 
@@ -28,6 +29,9 @@ MODELS = {
                   "--set", "Output/Probe interval=0.0007"],
     "Green-Lagrange": [*BASE, "--set", "Time integration/Step size=2e-3",
                        "--set", "Bodies/pendulum/Strain=Green-Lagrange"],
+    "XDMF": [*BASE, "--set", "Time integration/Step size=5e-4",
+             "--set", "Output/VTU fields=velocity, peak von Mises stress",
+             "--set", "Output/Format=XDMF"],
 }
 MODEL_FILE = TOP / "prm" / "pendulum" / "pendulum.prm"
 
@@ -90,3 +94,41 @@ def statistics(directory):
 
 def lines(file):
     return file.read_text(encoding="utf-8").splitlines() if file.exists() else []
+
+
+def list_of_fields(directory):
+    """The file for ParaView that lists the others, if there is one."""
+    return next((directory / name for name in ("solution.pvd", "solution.xdmf")
+                 if (directory / name).exists()), None)
+
+
+def field_files(directory):
+    """The files that are listed there, and others of this kind."""
+    return sorted([*directory.glob("solution*.vtu"), *directory.glob("solution*.h5")])
+
+
+def entries(directory):
+    """What is listed for each time, without the date that solution.pvd has in a comment, and the
+    names of the files."""
+    file = list_of_fields(directory)
+    if file is None:
+        return []
+    root = xml.etree.ElementTree.parse(file).getroot()
+    if file.suffix == ".pvd":
+        return [(xml.etree.ElementTree.tostring(entry).strip(), {entry.get("file")})
+                for entry in root.iter("DataSet")]
+    return [(xml.etree.ElementTree.tostring(entry),
+             {item.text.split(":")[0] for item in entry.iter("DataItem")})
+            for entry in root.findall("Domain/Grid/Grid")]
+
+
+def check_fields(check, what, directory, reference):
+    """Whatever has happened: each file under its name is that of the whole run, and all that are
+    listed are there. Returns what is listed."""
+    listed = entries(directory)
+    for name in sorted(set().union(*(names for _, names in listed))):
+        check((directory / name).exists(), f"{what}: {name} is listed, but not there")
+    for file in field_files(directory):
+        check(file.read_bytes() == (reference / file.name).read_bytes(),
+              f"{what}: {file.name} is something else")
+    return listed

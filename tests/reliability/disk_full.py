@@ -12,15 +12,17 @@ import os
 import resource
 import subprocess
 import sys
-import xml.etree.ElementTree
 
-from common import MODEL_FILE, MODELS, Checks, Folder, arguments, lines, run, statistics
+from common import (MODEL_FILE, MODELS, Checks, Folder, arguments, check_fields, entries, lines, run,
+                    statistics)
 
-SETTINGS = MODELS["fixed steps"]
+FORMATS = {"VTU": MODELS["fixed steps"], "XDMF": MODELS["XDMF"]}
 
-# The disk is full when the VTU files or the probes are written.
-NO_CHECKPOINTS = [setting.replace("Checkpoint interval=0.005", "Checkpoint interval=0")
-                  for setting in SETTINGS]
+
+def without_checkpoints(settings):
+    """The disk is full when files of fields, their list or the probes are written."""
+    return [setting.replace("Checkpoint interval=0.005", "Checkpoint interval=0")
+            for setting in settings]
 
 
 def check_results(check, what, directory, reference):
@@ -30,48 +32,45 @@ def check_results(check, what, directory, reference):
           f"{what}: probes.csv is something else")
     text = (directory / "probes.csv").read_bytes() if found else b"\n"
     check(text.endswith(b"\n"), f"{what}: probes.csv ends within a line")
-    listed = []
-    if (directory / "solution.pvd").exists():
-        tree = xml.etree.ElementTree.parse(directory / "solution.pvd")
-        listed = [entry.get("file") for entry in tree.iter("DataSet")]
-    for name in listed:
-        check((directory / name).exists(), f"{what}: {name} is listed, but not there")
-    for file in directory.glob("*.vtu"):
-        check(file.read_bytes() == (reference / file.name).read_bytes(),
-              f"{what}: {file.name} is something else")
+    listed = check_fields(check, what, directory, reference)
+    check(listed == entries(reference)[:len(listed)], f"{what}: something else is listed")
     check(not list(directory.glob("*.tmp")), f"{what}: temporary files are left")
     if (directory / "statistics.json").exists():
         statistics(directory)
     return len(found), len(listed)
 
 
-def attack(program, what, directory, reference, reason, check, limit=None, settings=None):
+def attack(program, settings, what, directory, reference, reason, check, limit=None):
     """Runs into the obstacle, and goes on elsewhere if there is a checkpoint."""
     preexec = None
     if limit is not None:
         def preexec():
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
     done = subprocess.run(
-        [program, *(settings or SETTINGS), "--output-directory", directory, MODEL_FILE],
+        [program, *settings, "--output-directory", directory, MODEL_FILE],
         stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=False,
         preexec_fn=preexec)
     check(done.returncode == 1, f"{what}: exit status {done.returncode}: {done.stderr}")
     check(done.stderr.count("\n") == 1 and reason in done.stderr,
           f"{what}: message: {done.stderr}")
-    n_rows, n_files = check_results(check, what, directory, reference)
+    n_rows, n_times = check_results(check, what, directory, reference)
     restarted = "-"
     checkpoint = directory / "checkpoint.h5"
     if checkpoint.exists():
         with Folder() as other:
-            status, messages = run(program, SETTINGS, other / "rest", "--restart", checkpoint)
+            status, messages = run(program, settings, other / "rest", "--restart", checkpoint)
             check(status == 0, f"{what}: restart: {messages}")
             rest = lines(other / "rest" / "probes.csv")
             whole = lines(reference / "probes.csv")
             check(rest[1:] == whole[len(whole) - len(rest) + 1:] and
                   len(rest) + n_rows >= len(whole),
                   f"{what}: rows are missing after the restart")
+            listed = check_fields(check, f"{what}: restart", other / "rest", reference)
+            check(listed == entries(reference)[len(entries(reference)) - len(listed):] and
+                  len(listed) + n_times >= len(entries(reference)),
+                  f"{what}: fields are missing after the restart")
             restarted = len(rest) - 1
-    print(f"{what}: {n_rows} rows and {n_files} VTU files kept, "
+    print(f"{what}: {n_rows} rows and fields of {n_times} times kept, "
           f"rows after a restart elsewhere: {restarted}; {done.stderr.strip()}")
 
 
@@ -86,7 +85,7 @@ def attack_read_only(program, disk, check):
     """Nothing can be written from the beginning: that is said before anything is computed."""
     if not mount(disk, "ro"):
         return
-    status, messages = run(program, SETTINGS, disk / "results")
+    status, messages = run(program, FORMATS["VTU"], disk / "results")
     check(status == 1 and messages.count("\n") == 1 and "Read-only file system" in messages,
           f"read-only: exit status {status}: {messages}")
     print(f"read-only file system: {messages.strip()}")
@@ -108,34 +107,43 @@ def in_namespace():
     return False
 
 
-def main():
-    options = arguments(__doc__.splitlines()[0], 20, "points at which the disk runs full")
-    may_mount = in_namespace()
-    check = Checks()
+def attack_format(program, form, number, may_mount, check):
+    """Full disks and limits of the size of files, for one format of the fields."""
+    settings = FORMATS[form]
     with Folder() as top:
         reference = top / "whole"
-        status, messages = run(options.program, SETTINGS, reference)
+        status, messages = run(program, settings, reference)
         check(status == 0, messages)
         sizes = {file.name: file.stat().st_size for file in reference.iterdir()}
         total = sum(sizes.values())
-        results = sum(size for name, size in sizes.items() if not name.endswith(".h5"))
-        n_points = options.number if may_mount else 0
-        for k in range(n_points):
+        results = sum(size for name, size in sizes.items() if not name.startswith("checkpoint"))
+        for k in range(number if may_mount else 0):
             disk = top / f"disk-{k}"
-            settings = SETTINGS if k % 2 == 0 else NO_CHECKPOINTS
-            n_bytes = int((total if k % 2 == 0 else results) * (k + 0.5) / n_points)
+            n_bytes = int((total if k % 2 == 0 else results) * (k + 0.5) / number)
             if not mount(disk, f"size={n_bytes}"):
                 print("File systems cannot be mounted here.")
                 break
-            attack(options.program, f"disk of {n_bytes} bytes", disk / "results", reference,
-                   "No space left on device", check, settings=settings)
+            attack(program, settings if k % 2 == 0 else without_checkpoints(settings),
+                   f"{form}, disk of {n_bytes} bytes", disk / "results", reference,
+                   "No space left on device", check)
             subprocess.run(["umount", disk], check=True)
+        n_limits = max(2, number // 4)
+        for k in range(n_limits):
+            limit = int(max(sizes.values()) * (k + 0.5) / n_limits)
+            attack(program, settings, f"{form}, files of at most {limit} bytes",
+                   top / f"limit-{k}", reference, "File too large", check, limit)
+
+
+def main():
+    options = arguments(__doc__.splitlines()[0], 20,
+                        "points at which the disk runs full, for each format")
+    may_mount = in_namespace()
+    check = Checks()
+    for form in FORMATS:
+        attack_format(options.program, form, options.number, may_mount, check)
+    with Folder() as top:
         if may_mount:
             attack_read_only(options.program, top / "read-only", check)
-        for k in range(max(2, options.number // 4)):
-            limit = int(max(sizes.values()) * (k + 0.5) / max(2, options.number // 4))
-            attack(options.program, f"files of at most {limit} bytes", top / f"limit-{k}",
-                   reference, "File too large", check, limit)
     check.finish()
 
 
