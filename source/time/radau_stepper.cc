@@ -17,10 +17,12 @@ namespace ACF
     constexpr double fast_turn = 0.15;
 
     // Part of the local error that the iteration may add, and bounds. More than
-    // the largest one lets the energy rise where steps are long.
-    constexpr double newton_share      = 0.01;
-    constexpr double least_tolerance   = 1e-13;
-    constexpr double largest_tolerance = 1e-10;
+    // the largest one lets the energy rise, unless the sum of all that the
+    // iterations of a run may do remains that part.
+    constexpr double newton_share             = 0.01;
+    constexpr double least_tolerance          = 1e-13;
+    constexpr double largest_tolerance        = 1e-10;
+    constexpr double largest_summed_tolerance = 1e-9;
   } // namespace
 
 
@@ -144,17 +146,21 @@ namespace ACF
         const double part      = equations.step_size() / parameters.end_time;
         const double error =
           std::max(least_tolerance,
-                   std::min(1e-9, share * parameters.tolerance * part * part));
+                   std::min(largest_summed_tolerance,
+                            share * parameters.tolerance * part * part));
         return {error, std::max(largest_tolerance, error)};
       }
     if (expected_error < 0)
       return {largest_tolerance, largest_tolerance};
     const double ratio = equations.step_size() / history.steps[0].size;
-    const double error =
-      expected_error * std::pow(ratio, local_error_order(tableau));
-    return {std::min(largest_tolerance,
-                     std::max(least_tolerance, newton_share * error)),
-            largest_tolerance};
+    const double error = newton_share * expected_error *
+                         std::pow(ratio, local_error_order(tableau));
+    // An error of positions, divided by the step size, is one of velocities,
+    // which acts for the rest of the time.
+    const double summed = error * equations.step_size() / parameters.end_time;
+    const double largest =
+      std::max(largest_tolerance, std::min(largest_summed_tolerance, summed));
+    return {std::min(largest, std::max(least_tolerance, error)), largest};
   }
 
 
