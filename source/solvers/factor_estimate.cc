@@ -46,8 +46,9 @@ namespace ACF
     const std::size_t n_bytes    = is_real ? sizeof(double) : sizeof(Complex);
     const unsigned int n_columns = dim * body.functionals().size();
     estimate.n_entries           = tree.n_entries();
-    estimate.column_bytes = n_bytes * n_columns * body.operators().n_unknowns();
-    estimate.work_bytes   = n_bytes * largest_work(tree);
+    estimate.column_bytes = (single ? n_bytes / 2 : n_bytes) * n_columns *
+                            body.operators().n_unknowns();
+    estimate.work_bytes     = n_bytes * largest_work(tree);
     estimate.n_setup_solves = n_columns + (single ? 4 : 1);
     if (is_real)
       estimate.n_bytes = single

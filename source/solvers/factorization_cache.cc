@@ -19,22 +19,28 @@ namespace ACF
     : factor(body.operators(), stiffness, shift, tree, precision)
     , functionals(body.functionals())
     , n_unknowns(body.operators().n_unknowns())
-    , columns(dim * functionals.size() * n_unknowns)
   {
     if (functionals.empty())
       return;
+    std::vector<Number> solutions(dim * functionals.size() * n_unknowns);
     for (unsigned int p = 0; p < functionals.size(); ++p)
       for (unsigned int k = 0; k < functionals[p].nodes.size(); ++k)
         for (unsigned int j = 0; j < dim; ++j)
-          columns[(dim * p + j) * n_unknowns + dim * functionals[p].nodes[k] +
-                  j] = functionals[p].weights[k];
-    factor.solve(columns.data(), dim * functionals.size());
+          solutions[(dim * p + j) * n_unknowns + dim * functionals[p].nodes[k] +
+                    j] = functionals[p].weights[k];
+    factor.solve(solutions.data(), dim * functionals.size());
+    columns = JointColumns<Number>(std::move(solutions),
+                                   n_unknowns,
+                                   factor.statistics().single_precision);
 
     joint_compliance.resize(dim * functionals.size(), dim * functionals.size());
     for (unsigned int q = 0; q < joint_compliance.cols(); ++q)
-      for (unsigned int p = 0; p < functionals.size(); ++p)
-        joint_compliance.template block<dim, 1>(dim * p, q) =
-          functional_value(p, columns.data() + q * n_unknowns);
+      {
+        const std::vector<Number> column = columns.column(q);
+        for (unsigned int p = 0; p < functionals.size(); ++p)
+          joint_compliance.template block<dim, 1>(dim * p, q) =
+            functional_value(p, column.data());
+      }
   }
 
 
@@ -60,8 +66,7 @@ namespace ACF
   JointedFactorization<Number>::subtract_columns(const Vector &F,
                                                  Number *x) const
   {
-    Eigen::Map<Vector>(x, n_unknowns).noalias() -=
-      Eigen::Map<const Matrix>(columns.data(), n_unknowns, F.size()) * F;
+    columns.subtract_product(F, x);
   }
 
 

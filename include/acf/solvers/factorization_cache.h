@@ -6,6 +6,7 @@
 
 #include <acf/base/statistics.h>
 #include <acf/mechanics/body.h>
+#include <acf/solvers/joint_columns.h>
 #include <acf/solvers/shifted_factorization.h>
 
 #include <Eigen/Dense>
@@ -70,14 +71,14 @@ namespace ACF
     std::size_t
     column_bytes() const
     {
-      return columns.size() * sizeof(Number);
+      return columns.n_bytes();
     }
 
   private:
     ShiftedFactorization<Number> factor;
     const std::vector<NodalFunctional> &functionals;
     std::size_t n_unknowns;
-    std::vector<Number> columns;
+    JointColumns<Number> columns;
     Matrix joint_compliance;
   };
 
