@@ -61,7 +61,7 @@ def draw_work_precision(folder):
             axis.set_xlabel("time in steps [s]")
             axis.grid(True, which="both", lw=0.3)
             if mine:
-                axis.legend(fontsize=8)
+                axis.legend(fontsize=8, loc="lower left")
         axes[0].set_ylabel("largest error of the position of a point [m]")
         unknowns = next(row["unknowns"] for row in rows if row["model"] == model)
         figure.suptitle(f"{model}, {unknowns} unknowns")
