@@ -30,7 +30,7 @@ namespace ACF
     constexpr double solve_work       = 3;     // per byte that a solve reads
     constexpr double unknown_work     = 1.1e4; // per unknown and iteration
     constexpr double constraint_work  = 6e5;   // per constraint and iteration
-    constexpr double integration_work = 1.9e3; // per node of a cell,
+    constexpr double integration_work = 250;   // per node of a cell,
                                                // integration point and stage
     constexpr double entry_work = 3.8e3;       // per entry that is factorised
 
