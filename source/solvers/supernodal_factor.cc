@@ -128,9 +128,16 @@ namespace ACF
     for (const EliminationTree::Supernode &supernode : tree->supernodes())
       {
         Block block;
-        block.offset    = n;
-        block.n_columns = dim * supernode.n_columns;
-        block.n_rows    = block.n_columns + dim * supernode.rows.size();
+        block.offset       = n;
+        block.offset_below = places_below.size();
+        block.first_place  = supernode.first;
+        block.n_nodes      = supernode.n_columns;
+        block.n_below      = supernode.rows.size();
+        block.n_columns    = dim * block.n_nodes;
+        block.n_rows       = block.n_columns + dim * block.n_below;
+        places_below.insert(places_below.end(),
+                            supernode.rows.begin(),
+                            supernode.rows.end());
         n += n_values(supernode, n_planes<Number>);
         longest_block = std::max(longest_block, block.n_rows);
         blocks.push_back(block);
@@ -146,7 +153,7 @@ namespace ACF
           while (n_own > 0 &&
                  partition.is_top[tree->supernode_at(rows[n_own - 1])])
             --n_own;
-        blocks[s].n_own_rows = n_own;
+        blocks[s].n_own_below = n_own;
       }
   }
 
@@ -197,10 +204,85 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // The components of a node and one number more, which means nothing.
+    template <typename Real>
+    struct Quads;
+
+    template <>
+    struct Quads<double>
+    {
+      typedef double type
+        __attribute__((vector_size(32), aligned(8), may_alias));
+      typedef long long mask __attribute__((vector_size(32)));
+    };
+
+    template <>
+    struct Quads<float>
+    {
+      typedef float type
+        __attribute__((vector_size(16), aligned(4), may_alias));
+      typedef int mask __attribute__((vector_size(16)));
+    };
+
+    constexpr unsigned int quad = 4;
+
+    template <typename Real>
+    ACF_INLINE typename Quads<Real>::type &
+    quad_at(Real *const p)
+    {
+      return *reinterpret_cast<typename Quads<Real>::type *>(p);
+    }
+
+    template <typename Real>
+    ACF_INLINE const typename Quads<Real>::type &
+    quad_at(const Real *const p)
+    {
+      return *reinterpret_cast<const typename Quads<Real>::type *>(p);
+    }
+
+    // With zero as fourth number.
+    template <typename Real>
+    ACF_INLINE typename Quads<Real>::type
+    components_at(const Real *const p)
+    {
+      const typename Quads<Real>::mask is_component = {-1, -1, -1, 0};
+      return is_component ? quad_at(p) : typename Quads<Real>::type{};
+    }
+
+
+
+    // The largest absolute value of n numbers.
+    double
+    largest_value(const double *const x, const std::size_t n)
+    {
+      typedef double Eight
+        __attribute__((vector_size(64), aligned(8), may_alias));
+      Eight largest = {};
+      std::size_t k = 0;
+      for (; k + 8 <= n; k += 8)
+        {
+          const Eight value = *reinterpret_cast<const Eight *>(x + k);
+          const Eight size  = value < Eight{} ? -value : value;
+          largest           = size > largest ? size : largest;
+        }
+      double result = 0;
+      for (unsigned int i = 0; i < 8; ++i)
+        result = std::max(result, largest[i]);
+      for (; k < n; ++k)
+        result = std::max(result, std::abs(x[k]));
+      return result;
+    }
+  } // namespace
+
+
+
   /**
    * Solves with some right-hand sides at once, which it keeps in the order of
-   * elimination: x[place][component][vector and plane]. In single precision
-   * they are scaled to one, so that none is too small for it.
+   * elimination: x[place][vector and plane][component], with four numbers for
+   * the three components, so that a node is copied by few instructions. In
+   * single precision they are scaled to one, so that none is too small for it.
    */
   template <typename Number, typename Real>
   template <unsigned int n_vectors>
@@ -210,8 +292,9 @@ namespace ACF
     explicit Solution(const SupernodalFactor &factor)
       : factor(factor)
       , tree(*factor.tree)
-      , longest(Kernels::round_up(factor.longest_block))
-      , x(n_x * tree.n_unknowns())
+      // a node that is copied to the last rows writes one number more
+      , longest(Kernels::round_up(factor.longest_block + 1))
+      , x(node_size * (tree.n_unknowns() / dim))
     {}
 
     void
@@ -220,22 +303,28 @@ namespace ACF
       const std::size_t n = tree.n_unknowns();
       for (unsigned int v = 0; v < n_vectors; ++v)
         {
-          scales[v] = 1;
+          scales[v]            = 1;
+          double inverse_scale = 1;
           if (std::is_same<Real, float>::value)
             {
-              double size = 0;
-              for (std::size_t k = 0; k < n; ++k)
-                for (unsigned int p = 0; p < planes; ++p)
-                  size = std::max(size, std::abs(plane(vectors[v * n + k], p)));
-              if (size > 0)
-                scales[v] = size;
+              const double size =
+                largest_value(&plane(vectors[v * n], 0), planes * n);
+              // the inverse of what is too small would be infinite
+              if (size >= std::numeric_limits<double>::min())
+                {
+                  scales[v]     = size;
+                  inverse_scale = 1 / size;
+                }
             }
           for (std::size_t place = 0; place < n / dim; ++place)
-            for (unsigned int i = 0; i < dim; ++i)
+            {
+              Number *const value = vectors + v * n + dim * tree.node()[place];
+              Real *const node =
+                x.data() + place * node_size + v * planes * quad;
               for (unsigned int p = 0; p < planes; ++p)
-                x[(dim * place + i) * n_x + v * planes + p] =
-                  plane(vectors[v * n + dim * tree.node()[place] + i], p) /
-                  scales[v];
+                for (unsigned int i = 0; i < dim; ++i)
+                  node[p * quad + i] = plane(value[i], p) * inverse_scale;
+            }
         }
     }
 
@@ -245,10 +334,14 @@ namespace ACF
       const std::size_t n = tree.n_unknowns();
       for (unsigned int v = 0; v < n_vectors; ++v)
         for (std::size_t place = 0; place < n / dim; ++place)
-          for (unsigned int i = 0; i < dim; ++i)
+          {
+            Number *const value = vectors + v * n + dim * tree.node()[place];
+            const Real *const node =
+              x.data() + place * node_size + v * planes * quad;
             for (unsigned int p = 0; p < planes; ++p)
-              plane(vectors[v * n + dim * tree.node()[place] + i], p) =
-                scales[v] * x[(dim * place + i) * n_x + v * planes + p];
+              for (unsigned int i = 0; i < dim; ++i)
+                plane(value[i], p) = scales[v] * node[p * quad + i];
+          }
     }
 
     void
@@ -267,8 +360,9 @@ namespace ACF
       for (const unsigned int s : partition.top)
         for (unsigned int branch = 1; branch < n_branches; ++branch)
           {
-            const std::size_t begin = dim * tree.supernodes()[s].first * n_x;
-            for (unsigned int k = 0; k < factor.blocks[s].n_columns * n_x; ++k)
+            const Block &block      = factor.blocks[s];
+            const std::size_t begin = block.first_place * node_size;
+            for (unsigned int k = 0; k < block.n_nodes * node_size; ++k)
               x[begin + k] += sums[branch][begin + k];
           }
       forward(partition.top, x.data());
@@ -279,32 +373,36 @@ namespace ACF
     }
 
   private:
-    static constexpr unsigned int planes = n_planes<Number>;
-    static constexpr unsigned int n_x    = planes * n_vectors;
+    static constexpr unsigned int planes    = n_planes<Number>;
+    static constexpr unsigned int n_x       = planes * n_vectors;
+    static constexpr unsigned int node_size = quad * n_x;
 
-    /** Rows are at [vector and plane][row] with the given distance. */
-    static void
+    /**
+     * Rows are at [vector and plane][row] with the given distance. Their copy
+     * writes one number behind those of the node.
+     */
+    ACF_INLINE static void
     read_node(const Real *x, Real *rows, const std::size_t distance)
     {
+      ACF_UNROLL
       for (unsigned int k = 0; k < n_x; ++k)
-        for (unsigned int i = 0; i < dim; ++i)
-          rows[k * distance + i] = x[i * n_x + k];
+        quad_at(rows + k * distance) = quad_at(x + k * quad);
     }
 
-    static void
+    ACF_INLINE static void
     write_node(const Real *rows, const std::size_t distance, Real *x)
     {
+      ACF_UNROLL
       for (unsigned int k = 0; k < n_x; ++k)
-        for (unsigned int i = 0; i < dim; ++i)
-          x[i * n_x + k] = rows[k * distance + i];
+        quad_at(x + k * quad) = components_at(rows + k * distance);
     }
 
-    static void
+    ACF_INLINE static void
     add_node(const Real *rows, const std::size_t distance, Real *x)
     {
+      ACF_UNROLL
       for (unsigned int k = 0; k < n_x; ++k)
-        for (unsigned int i = 0; i < dim; ++i)
-          x[i * n_x + k] += rows[k * distance + i];
+        quad_at(x + k * quad) += components_at(rows + k * distance);
     }
 
     Kernels::SupernodeView<Real>
@@ -327,24 +425,26 @@ namespace ACF
       dealii::AlignedVector<Real> work(longest * n_x);
       for (const unsigned int s : supernodes)
         {
-          const auto &supernode      = tree.supernodes()[s];
           const Block &block         = factor.blocks[s];
-          const std::size_t distance = Kernels::round_up(block.n_rows);
+          const std::size_t distance = Kernels::round_up(block.n_rows + 1);
           Real *const rows           = work.data();
           Real *const below          = rows + block.n_columns;
-          Real *const own            = x.data() + dim * supernode.first * n_x;
-          for (unsigned int k = 0; k < supernode.n_columns; ++k)
-            read_node(own + dim * k * n_x, rows + dim * k, distance);
+          Real *const own            = x.data() + block.first_place * node_size;
+          const unsigned int *const place =
+            factor.places_below.data() + block.offset_below;
+          for (unsigned int k = 0; k < block.n_nodes; ++k)
+            read_node(own + k * node_size, rows + dim * k, distance);
           for (unsigned int k = 0; k < n_x; ++k)
             std::fill(below + k * distance, rows + (k + 1) * distance, Real(0));
           solve(view(s), {rows, distance});
-          for (unsigned int k = 0; k < supernode.n_columns; ++k)
-            write_node(rows + dim * k, distance, own + dim * k * n_x);
-          for (unsigned int k = 0; k < supernode.rows.size(); ++k)
+          for (unsigned int k = 0; k < block.n_nodes; ++k)
+            write_node(rows + dim * k, distance, own + k * node_size);
+          for (unsigned int k = 0; k < block.n_own_below; ++k)
             add_node(below + dim * k,
                      distance,
-                     (k < block.n_own_rows ? x.data() : sums) +
-                       dim * supernode.rows[k] * n_x);
+                     x.data() + place[k] * node_size);
+          for (unsigned int k = block.n_own_below; k < block.n_below; ++k)
+            add_node(below + dim * k, distance, sums + place[k] * node_size);
         }
     }
 
@@ -356,15 +456,16 @@ namespace ACF
       for (unsigned int l = supernodes.size(); l-- > 0;)
         {
           const unsigned int s       = supernodes[l];
-          const auto &supernode      = tree.supernodes()[s];
           const Block &block         = factor.blocks[s];
-          const std::size_t distance = Kernels::round_up(block.n_rows);
+          const std::size_t distance = Kernels::round_up(block.n_rows + 1);
           Real *const rows           = work.data();
-          Real *const own            = x.data() + dim * supernode.first * n_x;
-          for (unsigned int k = 0; k < supernode.n_columns; ++k)
-            read_node(own + dim * k * n_x, rows + dim * k, distance);
-          for (unsigned int k = 0; k < supernode.rows.size(); ++k)
-            read_node(x.data() + dim * supernode.rows[k] * n_x,
+          Real *const own            = x.data() + block.first_place * node_size;
+          const unsigned int *const place =
+            factor.places_below.data() + block.offset_below;
+          for (unsigned int k = 0; k < block.n_nodes; ++k)
+            read_node(own + k * node_size, rows + dim * k, distance);
+          for (unsigned int k = 0; k < block.n_below; ++k)
+            read_node(x.data() + place[k] * node_size,
                       rows + block.n_columns + dim * k,
                       distance);
           for (unsigned int k = 0; k < n_x; ++k)
@@ -372,15 +473,15 @@ namespace ACF
                       rows + (k + 1) * distance,
                       Real(0));
           solve(view(s), {rows, distance});
-          for (unsigned int k = 0; k < supernode.n_columns; ++k)
-            write_node(rows + dim * k, distance, own + dim * k * n_x);
+          for (unsigned int k = 0; k < block.n_nodes; ++k)
+            write_node(rows + dim * k, distance, own + k * node_size);
         }
     }
 
     const SupernodalFactor &factor;
     const EliminationTree &tree;
     const std::size_t longest;
-    std::vector<Real> x;
+    dealii::AlignedVector<Real> x;
     std::array<double, n_vectors> scales;
   };
 

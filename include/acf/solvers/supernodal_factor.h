@@ -68,12 +68,25 @@ namespace ACF
       /** In @p values. */
       std::size_t offset;
 
+      /** In @p places_below. */
+      std::size_t offset_below;
+
+      /** Its nodes, from this place on. */
+      unsigned int first_place;
+
+      unsigned int n_nodes;
+
+      /** Nodes of the rows below, */
+      unsigned int n_below;
+
+      /** those that are in its own branch of the tree. */
+      unsigned int n_own_below;
+
+      /** Unknowns of its nodes. */
       unsigned int n_columns;
 
+      /** Unknowns of its nodes and of the rows below. */
       unsigned int n_rows;
-
-      /** Nodes of the rows below that are in its own branch of the tree. */
-      unsigned int n_own_rows;
     };
 
     template <unsigned int n_vectors>
@@ -85,6 +98,11 @@ namespace ACF
 
     std::shared_ptr<const EliminationTree> tree;
     std::vector<Block> blocks;
+
+    /** The rows below of all supernodes in one array, which is read in order.
+     */
+    std::vector<unsigned int> places_below;
+
     TreePartition partition;
     unsigned int longest_block = 0;
     dealii::AlignedVector<Real> values;
