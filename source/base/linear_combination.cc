@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/eight.h>
 #include <acf/base/linear_combination.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
@@ -11,9 +12,6 @@ namespace ACF
 {
   namespace
   {
-    typedef double Eight
-      __attribute__((vector_size(64), aligned(8), may_alias));
-
     // Numbers that stay in the first-level cache.
     constexpr std::size_t block_size = 512;
 
@@ -31,10 +29,10 @@ namespace ACF
       std::size_t i = begin;
       for (; i + 8 <= end; i += 8)
         {
-          Eight sum = c[0] * *reinterpret_cast<const Eight *>(x[0] + i);
+          Eight sum = c[0] * eight_at(x[0] + i);
           for (unsigned int k = 1; k < n; ++k)
-            sum += c[k] * *reinterpret_cast<const Eight *>(x[k] + i);
-          *reinterpret_cast<Eight *>(y + i) = sum;
+            sum += c[k] * eight_at(x[k] + i);
+          eight_at(y + i) = sum;
         }
       for (; i < end; ++i)
         {

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
+#include <acf/base/eight.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/mechanics/node_matrix.h>
@@ -17,8 +18,6 @@ namespace ACF
   {
     // Nodal values of one vector, padded, and of two.
     typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
-    typedef double Eight
-      __attribute__((vector_size(64), aligned(8), may_alias));
 
     // How n vectors are kept for a product: node by node, n_groups times Lanes.
     template <unsigned int n>

@@ -43,10 +43,7 @@ namespace ACF
                      const NodeSets &sets,
                      const Matrix3 &fallback)
   {
-    std::vector<Matrix3> rotations;
-    rotations.reserve(gradients.size());
-    for (const Matrix3 &F : gradients)
-      rotations.push_back(nearest_rotation(F).value_or(fallback));
+    std::vector<Matrix3> rotations = nearest_rotations(gradients, fallback);
     for (const auto &set : sets)
       {
         Matrix3 mean;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/eight.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/solvers/joint_columns.h>
@@ -12,8 +13,6 @@ namespace ACF
 {
   namespace
   {
-    typedef double Eight
-      __attribute__((vector_size(64), aligned(8), may_alias));
     typedef float EightSingle
       __attribute__((vector_size(32), aligned(4), may_alias));
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/eight.h>
 #include <acf/base/huge_pages.h>
 #include <acf/base/parallel.h>
 #include <acf/solvers/supernodal_factor.h>
@@ -257,13 +258,11 @@ namespace ACF
     double
     largest_value(const double *const x, const std::size_t n)
     {
-      typedef double Eight
-        __attribute__((vector_size(64), aligned(8), may_alias));
       Eight largest = {};
       std::size_t k = 0;
       for (; k + 8 <= n; k += 8)
         {
-          const Eight value = *reinterpret_cast<const Eight *>(x + k);
+          const Eight value = eight_at(x + k);
           const Eight size  = value < Eight{} ? -value : value;
           largest           = size > largest ? size : largest;
         }

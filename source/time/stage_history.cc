@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
+#include <acf/base/dot_product.h>
 #include <acf/time/stage_history.h>
 
 #include <cmath>
@@ -11,7 +12,7 @@ namespace ACF
   double
   relative_norm(const Body &body, const NodalVector &vector)
   {
-    return vector.l2_norm() / std::sqrt(1. * body.operators().n_nodes) /
+    return std::sqrt(dot_product(vector, vector) / body.operators().n_nodes) /
            body.operators().length;
   }
 

@@ -3,6 +3,7 @@
 
 #include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
+#include <acf/base/linear_combination.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/stage_iteration.h>
 
@@ -17,6 +18,15 @@ namespace ACF
     // Relative to the length of a body: far from the solution a tangent may be
     // so stiff against turning that short increments do not mean a small error.
     constexpr double largest_correction = 0.1;
+
+
+
+    // y += x
+    void
+    add(const NodalVector &x, NodalVector &y)
+    {
+      linear_combination({{1, &y}, {1, &x}}, y);
+    }
 
 
 
@@ -205,7 +215,7 @@ namespace ACF
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
           {
             for (unsigned int b = 0; b < system.bodies().size(); ++b)
-              equations.increments[i][b] += increment[i][b];
+              add(increment[i][b], equations.increments[i][b]);
             equations.multipliers[i] += constraints[i];
           }
       }
@@ -281,7 +291,7 @@ namespace ACF
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
           {
             for (unsigned int b = 0; b < system.bodies().size(); ++b)
-              equations.increments[i][b] += increment[i][b];
+              add(increment[i][b], equations.increments[i][b]);
             equations.multipliers[i] += constraint_increment[i];
           }
         if (report.converged)

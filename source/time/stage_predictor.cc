@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
+#include <acf/base/dot_product.h>
 #include <acf/base/linear_combination.h>
 #include <acf/time/stage_predictor.h>
 
@@ -174,7 +175,7 @@ namespace ACF
     for (unsigned int b = 0; b < products.size(); ++b)
       update(products[b],
              [b](const Defect &x, const Defect &y, const unsigned int i) {
-               return x.increments[i][b] * y.increments[i][b];
+               return dot_product(x.increments[i][b], y.increments[i][b]);
              });
     update(multiplier_products,
            [](const Defect &x, const Defect &y, const unsigned int i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/dot_product.h>
 #include <acf/base/linear_combination.h>
 #include <acf/base/parallel.h>
 #include <acf/mechanics/node_matrix.h>
@@ -215,6 +216,23 @@ TEST(LinearCombination, AnyNumberOfTerms)
           y -= expected;
           EXPECT_LT(y.linfty_norm(), 1e-14);
         }
+}
+
+TEST(DotProduct, AnySize)
+{
+  const ThreadLimit threads;
+  for (const unsigned int size : {0, 1, 7, 8, 31, 32, 1000, 20001})
+    for (const unsigned int n_threads : {1, 2})
+      {
+        MultithreadInfo::set_thread_limit(n_threads);
+        const std::vector<NodalVector> x = test_vectors(2, size);
+        long double expected             = 0;
+        for (unsigned int k = 0; k < size; ++k)
+          expected += static_cast<long double>(x[0][k]) * x[1][k];
+        EXPECT_NEAR(dot_product(x[0], x[1]),
+                    static_cast<double>(expected),
+                    1e-15 * size);
+      }
 }
 
 TEST(Parallel, SumsDoNotDependOnTiming)

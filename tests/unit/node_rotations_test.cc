@@ -36,6 +36,39 @@ TEST(NodeRotations, NearestRotationIsThatOfThePolarDecomposition)
   EXPECT_FALSE(nearest_rotation(F));
 }
 
+// In each place of a group of eight, beside others that take more or fewer
+// iterations or have no rotation; a number that eight does not divide.
+TEST(NodeRotations, NearestRotationsOfManyMatrices)
+{
+  Random random;
+  std::vector<Matrix3> gradients;
+  const double strains[] = {0., 0.3, 1e-6, 1e-2, 0.1};
+  for (unsigned int a = 0; a < 43; ++a)
+    {
+      Matrix3 F =
+        random.rotation() * (identity_matrix() + random.matrix(strains[a % 5]));
+      if (a % 9 == 4)
+        F[a % 3] *= -1;
+      else if (a == 11)
+        F[1][1] = std::numeric_limits<double>::quiet_NaN();
+      else if (a == 12)
+        F *= 1e200;
+      gradients.push_back(F);
+    }
+  const Matrix3 fallback = random.rotation();
+  const auto rotations   = nearest_rotations(gradients, fallback);
+  unsigned int n_without = 0;
+  ASSERT_EQ(rotations.size(), gradients.size());
+  for (unsigned int a = 0; a < gradients.size(); ++a)
+    {
+      const auto alone = nearest_rotation(gradients[a]);
+      n_without += !alone;
+      EXPECT_LT((rotations[a] - alone.value_or(fallback)).norm(), 1e-14) << a;
+    }
+  EXPECT_EQ(n_without, 7);
+  EXPECT_TRUE(nearest_rotations({}, fallback).empty());
+}
+
 TEST(NodeRotations, ConnectedNodes)
 {
   const auto functional = [](const std::vector<unsigned int> &nodes) {

@@ -7,6 +7,7 @@
 #include <acf/base/types.h>
 
 #include <optional>
+#include <vector>
 
 namespace ACF
 {
@@ -93,6 +94,14 @@ namespace ACF
    */
   std::optional<Matrix3>
   nearest_rotation(const Matrix3 &deformation_gradient);
+
+  /**
+   * nearest_rotation() of many matrices, eight at once.
+   * @param fallback where there is none
+   */
+  std::vector<Matrix3>
+  nearest_rotations(const std::vector<Matrix3> &deformation_gradients,
+                    const Matrix3 &fallback);
 
   /**
    * Rotation by the angle $|v|$ about the axis $v/|v|$:

@@ -56,10 +56,11 @@ namespace ACF
     {
       StageVector bodies;
       StageConstraints multipliers;
-
-      void
-      add(const double factor, const Vectors &other);
     };
+
+    /** Removes the oldest difference. */
+    void
+    forget_oldest();
 
     double
     product(const StageVector &a, const StageVector &b) const;
@@ -72,6 +73,9 @@ namespace ACF
 
     /** Of the last iterations, the oldest ones first. */
     std::deque<Vectors> steps, differences;
+
+    /** Products of the differences with each other. */
+    Eigen::MatrixXd gram;
   };
 } // namespace ACF
 

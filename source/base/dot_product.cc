@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: LGPL-2.1-or-later
+// Copyright (C) 2026 The acf-dealii authors
+
+#include <acf/base/dot_product.h>
+#include <acf/base/eight.h>
+#include <acf/base/parallel.h>
+#include <acf/base/processor.h>
+
+namespace ACF
+{
+  namespace
+  {
+    // Four sums that do not wait for each other.
+    ACF_INLINE double
+    multiply_and_add(const double *const x,
+                     const double *const y,
+                     const std::size_t begin,
+                     const std::size_t end)
+    {
+      Eight sums[4] = {};
+      std::size_t i = begin;
+      for (; i + 32 <= end; i += 32)
+        {
+          ACF_UNROLL
+          for (unsigned int k = 0; k < 4; ++k)
+            sums[k] += eight_at(x + i + 8 * k) * eight_at(y + i + 8 * k);
+        }
+      const Eight sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
+      double total    = 0;
+      for (unsigned int k = 0; k < 8; ++k)
+        total += sum[k];
+      for (; i < end; ++i)
+        total += x[i] * y[i];
+      return total;
+    }
+
+
+
+    // One function per instruction set.
+#define ACF_PRODUCTS(name, attributes)                      \
+  attributes double product_##name(const double *const x,   \
+                                   const double *const y,   \
+                                   const std::size_t begin, \
+                                   const std::size_t end)   \
+  {                                                         \
+    return multiply_and_add(x, y, begin, end);              \
+  }
+
+    ACF_PRODUCTS(any, )
+#if defined(__x86_64__)
+    ACF_PRODUCTS(avx2, ACF_AVX2)
+    ACF_PRODUCTS(avx512, ACF_AVX512)
+#endif
+#undef ACF_PRODUCTS
+  } // namespace
+
+
+
+  double
+  dot_product(const NodalVector &x, const NodalVector &y)
+  {
+    AssertDimension(x.size(), y.size());
+    return sum_ranges<double>(
+      x.size(), [&](const std::size_t begin, const std::size_t end) {
+#if defined(__x86_64__)
+        if (present_processor() == Processor::avx512)
+          return product_avx512(x.begin(), y.begin(), begin, end);
+        if (present_processor() == Processor::avx2)
+          return product_avx2(x.begin(), y.begin(), begin, end);
+#endif
+        return product_any(x.begin(), y.begin(), begin, end);
+      });
+  }
+} // namespace ACF
