@@ -5,7 +5,9 @@
 // comma-separated values: assembly with factorisation (without reading the
 // model file) relative to a single link, time per iteration and link, and
 // memory of factors and states. Times are medians of three runs. Fails if a
-// longer chain assembles more bodies or makes more factors.
+// longer chain assembles more bodies or makes more factors. Links of two sizes:
+// with a factor that stays in the second-level cache, and with one that does
+// not.
 //
 // Usage: chain_cost [--quick]
 
@@ -23,7 +25,7 @@ namespace
   const double step_size = 1e-3;
 
   std::string
-  model_file(const unsigned int n_links)
+  model_file(const std::string &cells, const unsigned int n_links)
   {
     std::string names, bodies, joint_names, joints;
     for (unsigned int k = 0; k < n_links; ++k)
@@ -37,12 +39,12 @@ namespace
     set Element         = hexahedron
     set Box from        = 0, -0.005, -0.005
     set Box to          = 0.1, 0.005, 0.005
-    set Cells           = 8, 2, 2
     set Young's modulus = 2e8
     set Poisson's ratio = 0.3
     set Density         = 1000
-    set Position        = )" +
-                  std::to_string(0.1 * k) + ", 0, 0\n  end\n";
+    set Cells           = )" +
+                  cells + "\n set Position = " + std::to_string(0.1 * k) +
+                  ", 0, 0\n  end\n";
         joints +=
           "subsection joint " + number +
           "\n set Type = spherical\n set Between = link " + number +
@@ -68,12 +70,14 @@ namespace
   };
 
   Cost
-  measure(const unsigned int n_links, const unsigned int n_steps)
+  measure(const std::string &cells,
+          const unsigned int n_links,
+          const unsigned int n_steps)
   {
     std::vector<Cost> costs(3);
     for (Cost &cost : costs)
       {
-        RecordedRun run(model_file(n_links),
+        RecordedRun run(model_file(cells, n_links),
                         1.,
                         {"Time integration/End time=" +
                          std::to_string(step_size * n_steps)});
@@ -113,35 +117,46 @@ main(int argc, char **argv)
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
 
-  std::vector<unsigned int> numbers = {1, 4};
-  if (!quick)
-    numbers = {1, 10, 50, 100, 200};
-  bool success        = true;
-  double single_setup = 0;
-  std::cout << "links,unknowns,constraints,assembled bodies,factorisations,"
+  bool success = true;
+  std::cout << "unknowns of a link,links,unknowns,constraints,assembled "
+               "bodies,factorisations,"
                "factor memory [B],memory of positions and velocities [B],"
                "assembly and factorisation [s],relative to one link,"
                "iterations per step,per iteration and link [ms],"
                "per step and link [ms]"
             << std::endl;
-  for (const unsigned int n : numbers)
+  const auto run = [&](const std::string &cells,
+                       const std::vector<unsigned int> &numbers,
+                       const unsigned int n_steps) {
+    double single_setup = 0;
+    for (const unsigned int n : numbers)
+      {
+        const Cost cost                = measure(cells, n, n_steps);
+        const Statistics &statistics   = cost.statistics;
+        const unsigned long n_factored = statistics.complex_factorizations;
+        if (n == 1)
+          single_setup = cost.setup;
+        success = success && cost.n_reference_bodies == 1 && n_factored == 1 &&
+                  statistics.real_factorizations == 0;
+        const std::size_t n_unknowns = cost.state_bytes / (2 * sizeof(double));
+        std::cout << n_unknowns / n << ',' << n << ',' << n_unknowns << ','
+                  << 3 * n << ',' << cost.n_reference_bodies << ','
+                  << n_factored << ',' << statistics.factor_bytes << ','
+                  << cost.state_bytes << ',' << cost.setup << ','
+                  << cost.setup / single_setup << ','
+                  << 1. * statistics.newton_iterations / statistics.steps << ','
+                  << 1e3 * cost.step / n << ','
+                  << 1e3 * cost.step / n * statistics.newton_iterations /
+                       statistics.steps
+                  << std::endl;
+      }
+  };
+  if (quick)
+    run("8, 2, 2", {1, 4}, 2);
+  else
     {
-      const Cost cost                = measure(n, quick ? 2 : 50);
-      const Statistics &statistics   = cost.statistics;
-      const unsigned long n_factored = statistics.complex_factorizations;
-      if (n == 1)
-        single_setup = cost.setup;
-      success = success && cost.n_reference_bodies == 1 && n_factored == 1 &&
-                statistics.real_factorizations == 0;
-      std::cout << n << ',' << cost.state_bytes / (2 * sizeof(double)) << ','
-                << 3 * n << ',' << cost.n_reference_bodies << ',' << n_factored
-                << ',' << statistics.factor_bytes << ',' << cost.state_bytes
-                << ',' << cost.setup << ',' << cost.setup / single_setup << ','
-                << 1. * statistics.newton_iterations / statistics.steps << ','
-                << 1e3 * cost.step / n << ','
-                << 1e3 * cost.step / n * statistics.newton_iterations /
-                     statistics.steps
-                << std::endl;
+      run("8, 2, 2", {1, 10, 50, 100, 200}, 50);
+      run("24, 4, 4", {1, 10, 100}, 50);
     }
   MPI_Finalize();
   return success ? 0 : 1;

@@ -1,34 +1,46 @@
 # SPDX-License-Identifier: LGPL-2.1-or-later
 # Copyright (C) 2026 The acf-dealii authors
-"""Cost against the number of unknowns, of a slender and of a bulky body."""
+"""Cost against the number of unknowns, of slender and bulky bodies."""
 
 from common import Failed, growth_exponent
 
 STEP_SIZE = 1e-3  # s
 
 # Counts of hexahedra, each cut into 24 tetrahedra: the blade of the pendulum
-# (one cell across) and a cube.
+# (one cell across), the same with cells of one size and more of them along its
+# length, and a cube.
 SLENDER = ["1, 20, 1", "1, 40, 2", "1, 80, 4", "1, 152, 8", "1, 272, 14"]
+LONGER = ["1, 20, 2", "1, 40, 2", "1, 160, 2", "1, 560, 2", "1, 1720, 2"]
+CELL_LENGTH = 0.025  # m
 BULKY = ["2, 2, 2", "4, 4, 4", "6, 6, 6", "9, 9, 9", "12, 12, 12"]
 
 
+def length_settings(cells):
+    length = CELL_LENGTH * int(cells.split(",")[1])
+    return {"Bodies/pendulum/Box to": f"0.00125, {length}, 0.025",
+            "Probes/chord/Point": f"0, {length / 2}, 0"}
+
+
 def bodies(quick):
-    yield ("slender", "prm/pendulum/pendulum.prm", "pendulum",
-           ["1, 4, 1", "1, 8, 1"] if quick else SLENDER)
+    """Kind, model file, body, counts of cells, and settings that belong to a count."""
+    pendulum = ("prm/pendulum/pendulum.prm", "pendulum")
+    yield ("slender", *pendulum, ["1, 4, 1", "1, 8, 1"] if quick else SLENDER, lambda cells: {})
+    yield ("longer", *pendulum, ["1, 4, 1", "1, 8, 1"] if quick else LONGER, length_settings)
     yield ("bulky", "tests/performance/benchmarks/cube.prm", "cube",
-           ["1, 1, 1", "2, 2, 2"] if quick else BULKY)
+           ["1, 1, 1", "2, 2, 2"] if quick else BULKY, lambda cells: {})
 
 
 def run(bench):
     n_steps = 3 if bench.quick else 20
     rows, exponents = [], []
-    for kind, model, body, meshes in bodies(bench.quick):
+    for kind, model, body, meshes, more_settings in bodies(bench.quick):
         mine = []
         for cells in meshes:
             settings = {f"Bodies/{body}/Element": "tetrahedron", f"Bodies/{body}/Cells": cells,
                         "Time integration/Step size": STEP_SIZE,
                         "Time integration/End time": n_steps * STEP_SIZE,
-                        "Output/VTU interval": 0, "Validity/Action": "ignore"}
+                        "Output/VTU interval": 0, "Validity/Action": "ignore",
+                        **more_settings(cells)}
             try:
                 result = bench.simulate(f"mesh, {kind}, {cells}", model, settings)
             except Failed as error:

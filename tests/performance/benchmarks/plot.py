@@ -73,7 +73,7 @@ def draw_mesh_cost(folder):
     if not rows:
         return
     figure, (times, memory) = plt.subplots(1, 2, figsize=(11, 5), constrained_layout=True)
-    for body, marker, line in (("slender", "o", "-"), ("bulky", "s", "--")):
+    for body, marker, line in (("slender", "o", "-"), ("longer", "^", ":"), ("bulky", "s", "--")):
         mine = [row for row in rows if row["body"] == body]
         sizes = [number(row["unknowns"]) for row in mine]
         for axis, column, colour in ((times, "assembly [s]", "tab:green"),
@@ -97,16 +97,17 @@ def draw_bodies_cost(folder):
     rows = read_rows(folder / "chain_cost.csv")
     if not rows:
         return
-    links = [number(row["links"]) for row in rows]
     figure, (steps, setup) = plt.subplots(1, 2, figsize=(11, 4.5), constrained_layout=True)
-    steps.semilogx(links, [number(row["per step and link [ms]"]) for row in rows], "o-",
-                   label="per step and link")
-    steps.semilogx(links, [number(row["per iteration and link [ms]"]) for row in rows], "s--",
-                   label="per iteration and link")
-    steps.set_ylabel("time [ms]")
-    steps.set_ylim(bottom=0)
-    setup.semilogx(links, [number(row["relative to one link"]) for row in rows], "o-",
-                   label="assembly and factorisation")
+    for size in sorted({row["unknowns of a link"] for row in rows}, key=int):
+        mine = [row for row in rows if row["unknowns of a link"] == size]
+        links = [number(row["links"]) for row in mine]
+        for column, style in (("per step and link", "o-"), ("per iteration and link", "s--")):
+            times = [number(row[column + " [ms]"]) for row in mine]
+            steps.loglog(links, [1e3 * time / number(size) for time in times], style,
+                         label=f"{column} of {size} unknowns")
+        setup.semilogx(links, [number(row["relative to one link"]) for row in mine], "o-",
+                       label=f"assembly and factorisation, links of {size} unknowns")
+    steps.set_ylabel("time per unknown [us]")
     setup.set_ylabel("time relative to one link")
     setup.set_ylim(bottom=0)
     for axis in (steps, setup):
