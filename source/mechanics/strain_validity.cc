@@ -5,8 +5,6 @@
 
 #include <deal.II/base/symmetric_tensor.h>
 
-#include <deal.II/fe/fe_values.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -64,30 +62,21 @@ namespace ACF
     // The figures of all integration points.
     void
     judge_strains(const Body &body,
+                  const CellGradients &gradients,
                   const NodalVector &q,
                   StrainValidity &validity)
     {
-      const BodyDiscretization &space = body.discretization();
-      FEValues<dim> values(space.mesh().mapping(),
-                           space.scalar_element(),
-                           space.mesh().cell_quadrature(2),
-                           update_gradients | update_JxW_values);
-      std::vector<unsigned int> nodes(values.dofs_per_cell);
       const bool is_reduced = body.strain_measure() == StrainMeasure::reduced;
       Energies energies;
       Matrix3 most_turned;
       double largest_skew = -1;
-      for (const auto &cell : space.dof_handler().active_cell_iterators())
+      std::vector<Matrix3> cell_gradients;
+      for (std::size_t cell = 0; cell < gradients.n_cells(); ++cell)
         {
-          values.reinit(
-            typename Triangulation<dim>::active_cell_iterator(cell));
-          space.get_nodes(cell, nodes);
-          for (const unsigned int point : values.quadrature_point_indices())
+          gradients.evaluate(q, cell, cell_gradients);
+          for (unsigned int point = 0; point < gradients.n_points(); ++point)
             {
-              Matrix3 H;
-              for (const unsigned int i : values.dof_indices())
-                for (unsigned int c = 0; c < dim; ++c)
-                  H[c] += q[dim * nodes[i] + c] * values.shape_grad(i, point);
+              const Matrix3 &H = cell_gradients[point];
               Strain strain    = symmetrize(H);
               Strain neglected = 0.5 * symmetrize(transpose(H) * H);
               if (!is_reduced)
@@ -98,7 +87,7 @@ namespace ACF
               energies.add(body.material(),
                            strain,
                            neglected,
-                           values.JxW(point));
+                           gradients.volume(cell, point));
               if (strain.norm() > validity.strain)
                 for (const double principal : eigenvalues(strain))
                   validity.strain =
@@ -206,16 +195,17 @@ namespace ACF
 
 
     double
-    largest_sagitta(const Body &body, const NodalVector &q)
+    largest_sagitta(const Body &body,
+                    const CellGradients &gradients,
+                    const NodalVector &q)
     {
-      const BodyDiscretization &space = body.discretization();
-      const std::vector<Edge> edges   = cell_edges(space.scalar_element());
+      const std::vector<Edge> edges =
+        cell_edges(body.discretization().scalar_element());
       const Thickness thickness(body.operators());
-      std::vector<unsigned int> nodes(space.scalar_element().n_dofs_per_cell());
       double largest = 0;
-      for (const auto &cell : space.dof_handler().active_cell_iterators())
+      for (std::size_t cell = 0; cell < gradients.n_cells(); ++cell)
         {
-          space.get_nodes(cell, nodes);
+          const unsigned int *const nodes = gradients.nodes(cell);
           for (const Edge &edge : edges)
             largest =
               std::max(largest,
@@ -230,7 +220,9 @@ namespace ACF
 
 
   std::optional<StrainValidity>
-  strain_validity(const Body &body, const NodalVector &positions)
+  strain_validity(const Body &body,
+                  const CellGradients &gradients,
+                  const NodalVector &positions)
   {
     const std::optional<BodyRotation> frame =
       body_rotation(mean_deformation_gradient(body.operators(), positions),
@@ -241,9 +233,9 @@ namespace ACF
     NodalVector q(positions.size());
     co_rotated_displacement(body.operators(), positions, frame->rotation, q);
     StrainValidity validity;
-    judge_strains(body, q, validity);
+    judge_strains(body, gradients, q, validity);
     validity.deflection   = largest_deflection(body.operators(), q);
-    validity.cell_bending = largest_sagitta(body, q);
+    validity.cell_bending = largest_sagitta(body, gradients, q);
     return validity;
   }
 } // namespace ACF

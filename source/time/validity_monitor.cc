@@ -190,7 +190,10 @@ namespace ACF
   ValidityMonitor::check(const unsigned int b, const SystemState &state)
   {
     const Body &body = system.bodies()[b];
-    const auto found = strain_validity(body, state.positions[b]);
+    const auto &its_gradients =
+      gradients.try_emplace(&body.reference(), body.discretization())
+        .first->second;
+    const auto found = strain_validity(body, its_gradients, state.positions[b]);
     ++statistics.validity_checks;
     if (!found) // no step ends like this
       return;

@@ -7,6 +7,8 @@
 #include <acf/base/exceptions.h>
 #include <acf/time/validity_monitor.h>
 
+#include <deal.II/fe/fe_values.h>
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -53,10 +55,63 @@ namespace
   figures_after(const Body &body, const Map &map)
   {
     return *strain_validity(body,
+                            CellGradients(body.discretization()),
                             transformed(body.operators().reference_positions,
                                         map));
   }
 } // namespace
+
+
+
+// Against those of the finite element library, for straight and curved cells.
+TEST(CellGradients, AreThoseOfTheElements)
+{
+  Random random;
+  std::vector<std::string> all = meshes;
+  all.push_back(
+    "set Mesh = cylinder\n set Cylinder from = 0, 0, 0\n"
+    "set Cylinder to = 0, 0, 1\n set Cylinder radius = 0.5\n"
+    "set Cells = 3, 2\n set Element = tetrahedron\n"
+    "set Geometry = quadratic\n");
+  for (const std::string &mesh : all)
+    {
+      const Body body = make_body(parameters_of(mesh, RotationMeasure::polar));
+      const BodyDiscretization &space = body.discretization();
+      const CellGradients gradients(space);
+      NodalVector q(body.operators().n_unknowns());
+      for (double &value : q)
+        value = random.number(1);
+      FEValues<dim> values(space.mesh().mapping(),
+                           space.scalar_element(),
+                           space.mesh().cell_quadrature(2),
+                           update_gradients | update_JxW_values);
+      ASSERT_EQ(gradients.n_points(), values.n_quadrature_points);
+      std::vector<unsigned int> nodes(values.dofs_per_cell);
+      std::vector<Matrix3> found;
+      std::size_t cell_number = 0;
+      double error = 0, volume = 0;
+      for (const auto &cell : space.dof_handler().active_cell_iterators())
+        {
+          values.reinit(
+            typename Triangulation<dim>::active_cell_iterator(cell));
+          space.get_nodes(cell, nodes);
+          gradients.evaluate(q, cell_number, found);
+          for (const unsigned int point : values.quadrature_point_indices())
+            {
+              Matrix3 H;
+              for (const unsigned int a : values.dof_indices())
+                for (unsigned int i = 0; i < dim; ++i)
+                  H[i] += q[dim * nodes[a] + i] * values.shape_grad(a, point);
+              error = std::max(error, (found[point] - H).norm() / H.norm());
+              volume += gradients.volume(cell_number, point);
+            }
+          ++cell_number;
+        }
+      EXPECT_EQ(cell_number, gradients.n_cells());
+      EXPECT_LT(error, 1e-12);
+      EXPECT_NEAR(volume, body.operators().volume, 1e-12 * volume);
+    }
+}
 
 
 
@@ -195,7 +250,8 @@ TEST(StrainValidity, NoRotation)
   const Body body = make_body(parameters_of(box_mesh, RotationMeasure::polar));
   NodalVector mirrored = body.operators().reference_positions;
   mirrored *= -1;
-  EXPECT_FALSE(strain_validity(body, mirrored));
+  EXPECT_FALSE(
+    strain_validity(body, CellGradients(body.discretization()), mirrored));
 }
 
 

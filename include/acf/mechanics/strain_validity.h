@@ -5,6 +5,7 @@
 #define acf_mechanics_strain_validity_h
 
 #include <acf/mechanics/body.h>
+#include <acf/mechanics/cell_gradients.h>
 
 #include <optional>
 
@@ -68,17 +69,19 @@ namespace ACF
   };
 
   /**
-   * One loop over the cells of a body, with a rule that integrates quadratic
-   * polynomials: four points in a tetrahedron, 2 x 2 x 2 in a hexahedron.
-   * Strains at the surface of a bent body are therefore larger than what is
-   * found: by a factor of $\sqrt3$ with one hexahedron over its thickness.
-   * See theory (5.1), theory (5.2), theory (5.3), theory (5.4).
+   * One loop over the integration points of the cells of a body. Strains at the
+   * surface of a bent body are therefore larger than what is found: by a factor
+   * of $\sqrt3$ with one hexahedron over its thickness. See theory (5.1),
+   * theory (5.2), theory (5.3), theory (5.4).
    *
+   * @param gradients of the body's cells
    * @param positions $x_a$, m
    * @return nothing if the mean deformation gradient has no rotation
    */
   std::optional<StrainValidity>
-  strain_validity(const Body &body, const NodalVector &positions);
+  strain_validity(const Body &body,
+                  const CellGradients &gradients,
+                  const NodalVector &positions);
 } // namespace ACF
 
 #endif

@@ -8,6 +8,7 @@
 #include <acf/time/time_loop.h>
 
 #include <iosfwd>
+#include <map>
 
 namespace ACF
 {
@@ -115,6 +116,10 @@ namespace ACF
     std::ostream &warnings;
     Statistics &statistics;
     std::vector<Record> bodies;
+
+    /** Of each reference body; made when they are needed first. */
+    std::map<const ReferenceBody *, CellGradients> gradients;
+
     double next_check = 0;
   };
 } // namespace ACF
