@@ -130,41 +130,39 @@ namespace ACF
     const auto append = [&](const MarkerLinearization::Triplets &entries,
                             const Number factor) {
       for (const auto &entry : entries)
-        triplets.emplace_back(entry.row(), entry.col(), factor * entry.value());
+        triplets.emplace_back(entry.col(), entry.row(), factor * entry.value());
     };
     append(linearization.stiffness, coefficients.stiffness);
     append(linearization.damping, coefficients.damping);
     append(linearization.mass, coefficients.mass);
-    H.resize(n, n);
-    H.setFromTriplets(triplets.begin(), triplets.end());
+    H_transposed.assemble(n, n, triplets, !analyzed);
     triplets.clear();
-    append(linearization.constraints, Number(1));
-    D.resize(m, n);
-    D.setFromTriplets(triplets.begin(), triplets.end());
-    const Eigen::SparseMatrix<Number> H_transposed = H.transpose();
+    for (const auto &entry : linearization.constraints)
+      triplets.emplace_back(entry.row(), entry.col(), Number(entry.value()));
+    D.assemble(m, n, triplets, !analyzed);
 
     // (I + C H) s + C D^T mu = ..., D s - eps E mu = ...
     for (auto &triplet : triplets)
       triplet = Eigen::Triplet<Number>(n + triplet.row(),
                                        triplet.col(),
                                        triplet.value());
-    const double compliance = add_compliances(H_transposed, triplets);
+    const double compliance = add_compliances(triplets);
     for (const auto &entry : linearization.redundancy)
       triplets.emplace_back(n + entry.row(),
                             n + entry.col(),
                             -compliance * entry.value());
-    add_changes(H_transposed, triplets);
+    add_changes(triplets);
 
     const unsigned int n_unknowns = n + m + n_change_unknowns;
-    Eigen::SparseMatrix<Number> matrix(n_unknowns, n_unknowns);
-    matrix.setFromTriplets(triplets.begin(), triplets.end());
     // the pattern is that of the mechanism but for these two
     const bool pattern_varies =
       !changes.empty() || !linearization.redundancy.empty();
-    if (!analyzed || pattern_varies)
-      marker_system.analyzePattern(matrix);
+    const bool is_new = !analyzed || pattern_varies;
+    marker_matrix.assemble(n_unknowns, n_unknowns, triplets, is_new);
+    if (is_new)
+      marker_system.analyzePattern(marker_matrix.matrix());
     analyzed = !pattern_varies;
-    marker_system.factorize(matrix);
+    marker_system.factorize(marker_matrix.matrix());
     ++statistics.marker_factorizations;
     if (marker_system.info() != Eigen::Success)
       throw SimulationError(
@@ -176,16 +174,14 @@ namespace ACF
 
   template <typename Number>
   double
-  CoupledSystem<Number>::add_compliances(
-    const Eigen::SparseMatrix<Number> &H_transposed,
-    Triplets &triplets) const
+  CoupledSystem<Number>::add_compliances(Triplets &triplets) const
   {
     using Iterator = typename Eigen::SparseMatrix<Number>::InnerIterator;
 
     const unsigned int n = system.n_marker_values();
     for (unsigned int i = 0; i < n; ++i)
       triplets.emplace_back(i, i, Number(1));
-    double compliance = 0;
+    double squared_compliance = 0;
     for (unsigned int b = 0; b < factors.size(); ++b)
       {
         const auto &markers      = system.body_markers(b);
@@ -199,7 +195,8 @@ namespace ACF
                 factors[b]->compliance().template block<dim, dim>(
                   dim * markers[p], dim * markers[q]) *
                 R[q].transpose() / scales[b];
-              compliance = std::max(compliance, C.cwiseAbs().maxCoeff());
+              squared_compliance =
+                std::max(squared_compliance, C.cwiseAbs2().maxCoeff());
               for (unsigned int j = 0; j < dim; ++j)
                 {
                   const unsigned int k = first + dim * q + j;
@@ -212,12 +209,12 @@ namespace ACF
                                               C(i, j) * entry.value());
                   };
                   // columns of H^T and D are rows of H and D^T
-                  add_row(H_transposed, 0);
-                  add_row(D, n);
+                  add_row(H_transposed.matrix(), 0);
+                  add_row(D.matrix(), n);
                 }
             }
       }
-    return compliance;
+    return std::sqrt(squared_compliance);
   }
 
 
@@ -274,9 +271,7 @@ namespace ACF
 
   template <typename Number>
   void
-  CoupledSystem<Number>::add_changes(
-    const Eigen::SparseMatrix<Number> &H_transposed,
-    Triplets &triplets) const
+  CoupledSystem<Number>::add_changes(Triplets &triplets) const
   {
     using Iterator = typename Eigen::SparseMatrix<Number>::InnerIterator;
 
@@ -294,11 +289,12 @@ namespace ACF
               {
                 const Number value = change.marker_values(k, j);
                 triplets.emplace_back(first + k, row, change.size * value);
-                for (Iterator entry(H_transposed, first + k); entry; ++entry)
+                for (Iterator entry(H_transposed.matrix(), first + k); entry;
+                     ++entry)
                   triplets.emplace_back(row,
                                         entry.row(),
                                         value * entry.value());
-                for (Iterator entry(D, first + k); entry; ++entry)
+                for (Iterator entry(D.matrix(), first + k); entry; ++entry)
                   triplets.emplace_back(row,
                                         n + entry.row(),
                                         value * entry.value());
@@ -352,7 +348,8 @@ namespace ACF
     rhs << uncoupled, g, change_values;
     const Vector solution = marker_system.solve(rhs);
     const Vector mu       = solution.segment(n, g.size());
-    const Vector phi      = H * solution.head(n) + D.transpose() * mu;
+    const Vector phi = H_transposed.matrix().transpose() * solution.head(n) +
+                       D.matrix().transpose() * mu;
 
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {

@@ -74,6 +74,35 @@ namespace
   }
 } // namespace
 
+TEST(RepeatedPattern, IsWhatEigenMakesOfTriplets)
+{
+  using Triplet = Eigen::Triplet<std::complex<double>>;
+  RepeatedPattern<std::complex<double>> pattern;
+  std::vector<Triplet> triplets;
+  std::complex<double> value(1, 2);
+  const auto check = [&](const bool is_new) {
+    pattern.assemble(7, 5, triplets, is_new);
+    Eigen::SparseMatrix<std::complex<double>> expected(7, 5);
+    expected.setFromTriplets(triplets.begin(), triplets.end());
+    EXPECT_EQ(pattern.matrix().nonZeros(), expected.nonZeros());
+    EXPECT_EQ((pattern.matrix() - expected).norm(), 0);
+  };
+  // entries that come twice, in no order
+  for (const auto &[row, column] :
+       {std::pair(3, 4), {0, 1}, {6, 0}, {3, 4}, {2, 2}, {5, 4}, {0, 1}})
+    triplets.emplace_back(row, column, value *= 1.5);
+  check(true);
+  for (Triplet &triplet : triplets)
+    triplet = Triplet(triplet.row(), triplet.col(), value *= -0.7);
+  check(false);
+  // other entries: as many, said to be new; more
+  for (Triplet &triplet : triplets)
+    triplet = Triplet(6 - triplet.row(), triplet.col(), triplet.value());
+  check(true);
+  triplets.emplace_back(1, 1, value);
+  check(false);
+}
+
 TEST(CoupledSystem, EverythingAgainstTheDenseSystem)
 {
   Random random;

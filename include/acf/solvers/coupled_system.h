@@ -7,6 +7,7 @@
 #include <acf/mechanics/multibody_system.h>
 #include <acf/mechanics/node_rotations.h>
 #include <acf/solvers/factorization_cache.h>
+#include <acf/solvers/repeated_pattern.h>
 
 #include <Eigen/SparseLU>
 
@@ -113,7 +114,7 @@ namespace ACF
 
   private:
     using Matrix   = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
-    using Triplets = std::vector<Eigen::Triplet<Number>>;
+    using Triplets = typename RepeatedPattern<Number>::Triplets;
 
     /**
      * A LowRankChange with columns U of length one. Its unknowns are
@@ -144,15 +145,13 @@ namespace ACF
 
     /** I + C H and C D^T. @return the largest compliance */
     double
-    add_compliances(const Eigen::SparseMatrix<Number> &H_transposed,
-                    Triplets &triplets) const;
+    add_compliances(Triplets &triplets) const;
 
     void
     prepare_changes(const std::vector<LowRankChange> &terms);
 
     void
-    add_changes(const Eigen::SparseMatrix<Number> &H_transposed,
-                Triplets &triplets) const;
+    add_changes(Triplets &triplets) const;
 
     void
     solve_bodies();
@@ -185,8 +184,9 @@ namespace ACF
     std::vector<std::size_t> offsets;
     std::vector<std::vector<unsigned int>> groups;
 
-    Eigen::SparseMatrix<Number> H;
-    Eigen::SparseMatrix<Number> D;
+    RepeatedPattern<Number> H_transposed;
+    RepeatedPattern<Number> D;
+    RepeatedPattern<Number> marker_matrix;
     Eigen::SparseLU<Eigen::SparseMatrix<Number>> marker_system;
     bool analyzed = false;
 
