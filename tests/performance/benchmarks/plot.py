@@ -47,7 +47,7 @@ def save(figure, file):
 def draw_work_precision(folder):
     rows = [row for row in read_rows(folder / "work_precision.csv") if row["error [m]"]]
     for model in dict.fromkeys(row["model"] for row in rows):
-        figure, axes = plt.subplots(1, 2, sharex=True, sharey=True, figsize=(11, 5.5),
+        figure, axes = plt.subplots(1, 2, sharex=True, sharey=True, figsize=(11, 6.8),
                                     constrained_layout=True)
         for axis, strain in zip(axes, ("reduced", "Green-Lagrange")):
             mine = [row for row in rows if row["model"] == model and row["strain"] == strain]
@@ -61,7 +61,7 @@ def draw_work_precision(folder):
             axis.set_xlabel("time in steps [s]")
             axis.grid(True, which="both", lw=0.3)
             if mine:
-                axis.legend(fontsize=8, loc="lower left")
+                axis.legend(fontsize=8, loc="upper center", bbox_to_anchor=(0.5, -0.12), ncol=2)
         axes[0].set_ylabel("largest error of the position of a point [m]")
         unknowns = next(row["unknowns"] for row in rows if row["model"] == model)
         figure.suptitle(f"{model}, {unknowns} unknowns")
