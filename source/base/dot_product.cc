@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/dot_product.h>
-#include <acf/base/eight.h>
+#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 
@@ -23,7 +23,8 @@ namespace ACF
         {
           ACF_UNROLL
           for (unsigned int k = 0; k < 4; ++k)
-            sums[k] += eight_at(x + i + 8 * k) * eight_at(y + i + 8 * k);
+            sums[k] += load_lanes<Eight>(x + i + 8 * k) *
+                       load_lanes<Eight>(y + i + 8 * k);
         }
       const Eight sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
       double total    = 0;

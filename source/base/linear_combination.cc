@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/eight.h>
+#include <acf/base/lanes.h>
 #include <acf/base/linear_combination.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
@@ -29,10 +29,10 @@ namespace ACF
       std::size_t i = begin;
       for (; i + 8 <= end; i += 8)
         {
-          Eight sum = c[0] * eight_at(x[0] + i);
+          Eight sum = c[0] * load_lanes<Eight>(x[0] + i);
           for (unsigned int k = 1; k < n; ++k)
-            sum += c[k] * eight_at(x[k] + i);
-          eight_at(y + i) = sum;
+            sum += c[k] * load_lanes<Eight>(x[k] + i);
+          store_lanes(sum, y + i);
         }
       for (; i < end; ++i)
         {

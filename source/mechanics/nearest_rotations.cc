@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/eight.h>
+#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/mechanics/rotation.h>

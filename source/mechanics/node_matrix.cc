@@ -2,7 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
-#include <acf/base/eight.h>
+#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/mechanics/node_matrix.h>
@@ -16,13 +16,11 @@ namespace ACF
 {
   namespace
   {
-    // Nodal values of one vector, padded, and of two.
-    typedef double Four __attribute__((vector_size(32), aligned(8), may_alias));
-
     // How n vectors are kept for a product: node by node, n_groups times Lanes.
     template <unsigned int n>
     struct Layout
     {
+      // values of two vectors
       using Lanes                            = Eight;
       static constexpr unsigned int n_groups = (n + 1) / 2;
       static constexpr unsigned int n_lanes  = 8 * n_groups;
@@ -31,22 +29,11 @@ namespace ACF
     template <>
     struct Layout<1>
     {
+      // of one, padded
       using Lanes                            = Four;
       static constexpr unsigned int n_groups = 1;
       static constexpr unsigned int n_lanes  = 4;
     };
-
-    ACF_INLINE Four
-    load(const double *const p, Four)
-    {
-      return *reinterpret_cast<const Four *>(p);
-    }
-
-    ACF_INLINE Eight
-    load(const double *const p, Eight)
-    {
-      return *reinterpret_cast<const Eight *>(p);
-    }
 
     // Component j of each vector at its three places.
     template <int j>
@@ -74,7 +61,7 @@ namespace ACF
     ACF_INLINE Eight
     block_column(const double *const p, const unsigned int j, Eight)
     {
-      const Eight A = load(p + j, Eight());
+      const Eight A = load_lanes<Eight>(p + j);
       return __builtin_shufflevector(A, A, 0, 3, 6, 6, 0, 3, 6, 6);
     }
 
@@ -82,13 +69,13 @@ namespace ACF
     ACF_INLINE Four
     block_row(const double *const p, const unsigned int i, Four)
     {
-      return load(p + 3 * i, Four());
+      return load_lanes<Four>(p + 3 * i);
     }
 
     ACF_INLINE Eight
     block_row(const double *const p, const unsigned int i, Eight)
     {
-      const Four row = load(p + 3 * i, Four());
+      const Four row = load_lanes<Four>(p + 3 * i);
       return __builtin_shufflevector(row, row, 0, 1, 2, 3, 0, 1, 2, 3);
     }
 
@@ -173,17 +160,16 @@ namespace ACF
           for (unsigned int g = 0; g < n_groups; ++g)
             {
               const std::size_t shift = g * width;
-              const Lanes x_a = load(rows.x + n_lanes * a + shift, Lanes());
+              const Lanes x_a = load_lanes<Lanes>(rows.x + n_lanes * a + shift);
               Lanes sum       = Entry::product(entries, x_a);
               for (std::size_t e = 1; e < n_entries; ++e)
                 {
                   const double *const A_ab = entries + Entry::size * e;
                   const std::size_t b      = n_lanes * column[e] + shift;
-                  sum += Entry::product(A_ab, load(rows.x + b, Lanes()));
-                  *reinterpret_cast<Lanes *>(y + b) +=
-                    Entry::transposed_product(A_ab, x_a);
+                  sum += Entry::product(A_ab, load_lanes<Lanes>(rows.x + b));
+                  add_lanes(Entry::transposed_product(A_ab, x_a), y + b);
                 }
-              *reinterpret_cast<Lanes *>(y + n_lanes * a + shift) += sum;
+              add_lanes(sum, y + n_lanes * a + shift);
             }
         }
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/eight.h>
+#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/solvers/joint_columns.h>
@@ -13,8 +13,7 @@ namespace ACF
 {
   namespace
   {
-    typedef float EightSingle
-      __attribute__((vector_size(32), aligned(4), may_alias));
+    typedef float EightSingle __attribute__((vector_size(32)));
 
     // Columns that are subtracted at once, and numbers of x that stay in the
     // first-level cache meanwhile.
@@ -34,8 +33,7 @@ namespace ACF
     ACF_INLINE Eight
     load(const float *const p)
     {
-      return __builtin_convertvector(*reinterpret_cast<const EightSingle *>(p),
-                                     Eight);
+      return __builtin_convertvector(load_lanes<EightSingle>(p), Eight);
     }
 
 
@@ -52,7 +50,7 @@ namespace ACF
       std::size_t i = begin;
       for (; i + 8 <= end; i += 8)
         {
-          Eight sum = *reinterpret_cast<const Eight *>(x + i);
+          Eight sum = load_lanes<Eight>(x + i);
           for (unsigned int k = 0; k < group.n_columns; ++k)
             {
               const Eight y   = load(group.columns[k] + i);
@@ -66,7 +64,7 @@ namespace ACF
                          __builtin_shufflevector(y, y, 1, 0, 3, 2, 5, 4, 7, 6);
                 }
             }
-          *reinterpret_cast<Eight *>(x + i) = sum;
+          store_lanes(sum, x + i);
         }
       for (; i < end; i += (is_complex ? 2 : 1))
         for (unsigned int k = 0; k < group.n_columns; ++k)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/eight.h>
 #include <acf/base/huge_pages.h>
+#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/solvers/supernodal_factor.h>
 
@@ -214,42 +214,33 @@ namespace ACF
     template <>
     struct Quads<double>
     {
-      typedef double type
-        __attribute__((vector_size(32), aligned(8), may_alias));
+      typedef double type __attribute__((vector_size(32)));
       typedef long long mask __attribute__((vector_size(32)));
     };
 
     template <>
     struct Quads<float>
     {
-      typedef float type
-        __attribute__((vector_size(16), aligned(4), may_alias));
+      typedef float type __attribute__((vector_size(16)));
       typedef int mask __attribute__((vector_size(16)));
     };
 
     constexpr unsigned int quad = 4;
 
     template <typename Real>
-    ACF_INLINE typename Quads<Real>::type &
-    quad_at(Real *const p)
+    ACF_INLINE typename Quads<Real>::type
+    load_quad(const Real *const p)
     {
-      return *reinterpret_cast<typename Quads<Real>::type *>(p);
-    }
-
-    template <typename Real>
-    ACF_INLINE const typename Quads<Real>::type &
-    quad_at(const Real *const p)
-    {
-      return *reinterpret_cast<const typename Quads<Real>::type *>(p);
+      return load_lanes<typename Quads<Real>::type>(p);
     }
 
     // With zero as fourth number.
     template <typename Real>
     ACF_INLINE typename Quads<Real>::type
-    components_at(const Real *const p)
+    load_components(const Real *const p)
     {
       const typename Quads<Real>::mask is_component = {-1, -1, -1, 0};
-      return is_component ? quad_at(p) : typename Quads<Real>::type{};
+      return is_component ? load_quad(p) : typename Quads<Real>::type{};
     }
 
 
@@ -262,7 +253,7 @@ namespace ACF
       std::size_t k = 0;
       for (; k + 8 <= n; k += 8)
         {
-          const Eight value = eight_at(x + k);
+          const Eight value = load_lanes<Eight>(x + k);
           const Eight size  = value < Eight{} ? -value : value;
           largest           = size > largest ? size : largest;
         }
@@ -385,7 +376,7 @@ namespace ACF
     {
       ACF_UNROLL
       for (unsigned int k = 0; k < n_x; ++k)
-        quad_at(rows + k * distance) = quad_at(x + k * quad);
+        store_lanes(load_quad(x + k * quad), rows + k * distance);
     }
 
     ACF_INLINE static void
@@ -393,7 +384,7 @@ namespace ACF
     {
       ACF_UNROLL
       for (unsigned int k = 0; k < n_x; ++k)
-        quad_at(x + k * quad) = components_at(rows + k * distance);
+        store_lanes(load_components(rows + k * distance), x + k * quad);
     }
 
     ACF_INLINE static void
@@ -401,7 +392,7 @@ namespace ACF
     {
       ACF_UNROLL
       for (unsigned int k = 0; k < n_x; ++k)
-        quad_at(x + k * quad) += components_at(rows + k * distance);
+        add_lanes(load_components(rows + k * distance), x + k * quad);
     }
 
     Kernels::SupernodeView<Real>
