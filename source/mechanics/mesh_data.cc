@@ -24,50 +24,71 @@ namespace ACF
       return result / static_cast<double>(vertices.size());
     }
 
-    /** Determinant of the derivative of the trilinear map at @p xi, relative to
-     * the lengths of its columns; 0 if one of them is 0. */
-    double
-    relative_jacobian(const MeshData &data,
-                      const CellData<dim> &hexahedron,
-                      const Point<dim> &xi)
+    /** Derivative of the trilinear map at @p xi, one column per row. */
+    Tensor<2, dim>
+    derivative(const MeshData &data,
+               const CellData<dim> &hexahedron,
+               const Point<dim> &xi)
     {
-      Tensor<2, dim> columns; // one per row
+      Tensor<2, dim> columns;
       for (unsigned int v = 0; v < 8; ++v)
         for (unsigned int d = 0; d < dim; ++d)
           {
-            double derivative = 1;
+            double slope = 1;
             for (unsigned int e = 0; e < dim; ++e)
               {
                 const bool upper = ((v >> e) & 1U) != 0;
-                derivative *=
+                slope *=
                   (e == d ? (upper ? 1. : -1.) : (upper ? xi[e] : 1 - xi[e]));
               }
             columns[d] +=
-              derivative * Vector3(data.vertices[hexahedron.vertices[v]]);
+              slope * Vector3(data.vertices[hexahedron.vertices[v]]);
           }
-      const double lengths =
-        columns[0].norm() * columns[1].norm() * columns[2].norm();
-      return lengths > 0 ? determinant(columns) / lengths : 0.;
+      return columns;
     }
 
-    /** The smallest relative Jacobian of a hexahedron; that of a tetrahedron at
-     * the vertex where it is largest. */
-    double
-    cell_quality(const MeshData &data, const CellData<dim> &cell)
+    struct CellShape
     {
+      /** The smallest determinant of the derivative relative to the lengths of
+       * its columns; of a tetrahedron at the vertex where it is largest. */
+      double quality;
+
+      /** The smallest determinant relative to the cube with the longest
+       * distance of two vertices as diagonal. */
+      double volume;
+    };
+
+    CellShape
+    cell_shape(const MeshData &data, const CellData<dim> &cell)
+    {
+      double diameter = 0;
+      for (const unsigned int v : cell.vertices)
+        for (const unsigned int w : cell.vertices)
+          diameter =
+            std::max(diameter, data.vertices[v].distance(data.vertices[w]));
+      const double cube = std::pow(diameter / std::sqrt(3.), 3);
+
       if (data.reference_cell == ReferenceCells::Hexahedron)
         {
-          double quality = 1;
+          CellShape shape{1, 1};
           for (unsigned int p = 0; p < 27; ++p)
             {
-              const Point<dim> xi(0.5 * (p % 3),
-                                  0.5 * (p / 3 % 3),
-                                  0.5 * (p / 9));
-              const double jacobian = relative_jacobian(data, cell, xi);
+              const Tensor<2, dim> columns = derivative(
+                data,
+                cell,
+                Point<dim>(0.5 * (p % 3), 0.5 * (p / 3 % 3), 0.5 * (p / 9)));
+              const double lengths =
+                columns[0].norm() * columns[1].norm() * columns[2].norm();
+              const double jacobian = determinant(columns);
+              const double quality  = lengths > 0 ? jacobian / lengths : 0.;
               // in this order, not-a-number is the worst of all
-              quality = (jacobian >= quality ? quality : jacobian);
+              shape.quality =
+                (quality >= shape.quality ? shape.quality : quality);
+              shape.volume =
+                (jacobian / cube >= shape.volume ? shape.volume
+                                                 : jacobian / cube);
             }
-          return quality;
+          return shape;
         }
 
       const auto vertex = [&](const unsigned int v) {
@@ -81,7 +102,8 @@ namespace ACF
                             (vertex(v + 1) - vertex(v)).norm() *
                               (vertex(v + 2) - vertex(v)).norm() *
                               (vertex(v + 3) - vertex(v)).norm());
-      return smallest > 0 ? cross_product_3d(a, b) * c / smallest : 0.;
+      const double jacobian = cross_product_3d(a, b) * c;
+      return {smallest > 0 ? jacobian / smallest : 0., jacobian / cube};
     }
 
     void
@@ -288,13 +310,15 @@ namespace ACF
   check_cells(const MeshData &data, const MeshSource &source)
   {
     constexpr double smallest_quality = 1e-6;
+    constexpr double smallest_volume  = 1e-11; // deal.II's bound is 1e-12
     std::vector<unsigned int> inverted, degenerate;
     for (unsigned int c = 0; c < data.cells.size(); ++c)
       {
-        const double quality = cell_quality(data, data.cells[c]);
-        if (quality < -smallest_quality)
+        const CellShape shape = cell_shape(data, data.cells[c]);
+        if (shape.quality < -smallest_quality)
           inverted.push_back(c);
-        else if (!(quality > smallest_quality))
+        else if (!(shape.quality > smallest_quality &&
+                   shape.volume > smallest_volume))
           degenerate.push_back(c);
       }
     if (!inverted.empty())
@@ -305,8 +329,8 @@ namespace ACF
                          "cells with positive volume");
     if (!degenerate.empty())
       throw source.error(std::to_string(degenerate.size()) +
-                           " degenerate cells (without volume, or without "
-                           "angle at a vertex), the first: " +
+                           " degenerate cells (without volume, without angle "
+                           "at a vertex, or like needles), the first: " +
                            describe_cell(data, degenerate.front()),
                          "cells with a volume not negligible for their edges");
     if (!data.curved_edges.empty())

@@ -258,32 +258,63 @@ namespace ACF
 
 
 
-    // The best approximations in the span of vectors, by distance of the
-    // eigenvalues to the shift; mass-orthonormal.
+    // phi^T M phi = 1 and zero between different ones, by Gram and Schmidt:
+    // again until no vector gets much shorter, which has cancelled nothing
+    // then.
+    void
+    orthonormalize(const ModeOperators &operators,
+                   std::vector<FlatVector> &vectors)
+    {
+      constexpr unsigned int max_passes = 10;
+
+      FlatVector product(operators.size());
+      const auto normalize = [&](FlatVector &x) {
+        operators.apply_mass(product, x);
+        const double length = std::sqrt(x * product);
+        x /= length;
+        product /= length;
+        return length;
+      };
+      for (unsigned int j = 0; j < vectors.size(); ++j)
+        {
+          double length       = normalize(vectors[j]);
+          unsigned int passes = 0;
+          do
+            {
+              for (unsigned int i = 0; i < j; ++i)
+                vectors[j].add(-(vectors[i] * product), vectors[i]);
+              length = normalize(vectors[j]);
+          } while (j > 0 && length < 0.7 && ++passes < max_passes);
+          // or not finite
+          if (!(length >= 0.7))
+            throw SimulationError(
+              "The modes were not found: vectors that are "
+              "linearly dependent or not finite.");
+        }
+    }
+
+
+
+    // The best approximations in the span of orthonormal vectors, by distance
+    // of the eigenvalues to the shift.
     std::vector<double>
     rayleigh_ritz(const ModeOperators &operators,
                   std::vector<FlatVector> &vectors)
     {
       const unsigned int p = vectors.size();
-      Eigen::MatrixXd K(p, p), M(p, p);
+      Eigen::MatrixXd K(p, p);
       FlatVector product(operators.size());
       for (unsigned int j = 0; j < p; ++j)
         {
-          operators.apply_mass(product, vectors[j]);
-          vectors[j] /= std::sqrt(vectors[j] * product);
-          operators.apply_mass(product, vectors[j]);
-          for (unsigned int i = 0; i <= j; ++i)
-            M(i, j) = M(j, i) = vectors[i] * product;
           operators.apply_stiffness(product, vectors[j]);
           for (unsigned int i = 0; i <= j; ++i)
             K(i, j) = K(j, i) = vectors[i] * product;
         }
-      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> solver(K,
-                                                                             M);
+      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(K);
       if (solver.info() != Eigen::Success)
         throw SimulationError(
-          "The modes were not found: vectors that are "
-          "linearly dependent or not finite.");
+          "The modes were not found: the Rayleigh-Ritz "
+          "values did not converge.");
 
       std::vector<unsigned int> order(p);
       std::iota(order.begin(), order.end(), 0);
@@ -308,7 +339,9 @@ namespace ACF
 
 
     // Until the first eigenvalues stay; three iterations bring out what Lanczos
-    // has missed.
+    // has missed. Slow modes grow by many orders of magnitude in a single
+    // solve: the vectors have to be orthogonal before, or what is left of the
+    // others is round-off.
     std::vector<double>
     iterate_subspace(const ModeOperators &operators,
                      const unsigned int number,
@@ -317,6 +350,7 @@ namespace ACF
     {
       constexpr unsigned int min_iterations = 3, max_iterations = 20;
 
+      orthonormalize(operators, vectors);
       std::vector<double> eigenvalues;
       FlatVector product(operators.size());
       for (unsigned int k = 1; k <= max_iterations; ++k)
@@ -326,6 +360,7 @@ namespace ACF
               operators.apply_mass(product, vector);
               operators.solve(vector, product);
             }
+          orthonormalize(operators, vectors);
           const std::vector<double> previous = eigenvalues;
           eigenvalues  = rayleigh_ritz(operators, vectors);
           bool settled = (k >= min_iterations);

@@ -67,9 +67,10 @@ namespace ACF
       "Newton tolerance",
       newton_tolerance,
       "Bound on the predicted error of the positions that the iteration of a "
-      "step leaves, relative to the length of a body; zero: 1 % of the "
-      "estimated error of the step itself, within 1e-13 and 1e-10, or 1e-9 in "
-      "short runs with large steps. Units: none.",
+      "step leaves, relative to the length of a body; zero: with a Tolerance "
+      "what adds up to at most a tenth of it (three stages: a hundredth), else "
+      "1 % of the estimated error of the step itself, within 1e-13 and 1e-10, "
+      "or 1e-9 in short runs with large steps. Units: none.",
       Patterns::Double(0, 1e-2));
     prm.add_parameter("Maximal Newton iterations",
                       max_newton_iterations,
