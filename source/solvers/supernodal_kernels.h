@@ -7,6 +7,8 @@
 #include <acf/base/processor.h>
 #include <acf/solvers/elimination_tree.h>
 
+#include <atomic>
+
 /*
  * The loops of SupernodalFactor over the numbers of one supernode, for one or
  * more right-hand sides at once. Numbers are kept as n_planes = 1 plane (real)
@@ -318,6 +320,8 @@ namespace ACF
                   ACF_UNROLL
                   for (unsigned int p = n_planes; p > 0; --p)
                     b[p - 1] = entry[(c - 1) * n_planes + p - 1];
+                  // or the compiler reads in another order
+                  std::atomic_signal_fence(std::memory_order_acq_rel);
                   multiply_add<1, n_planes>(sum[c - 1], b, x);
                 }
             }
