@@ -230,21 +230,26 @@ namespace ACF
         expected_error =
           std::max(tried_error, expected_error * std::pow(ratio, order) / 2);
       }
+    step_start.time        = state.time;
+    step_start.multipliers = state.multipliers;
+    step_start.law_values  = state.law_values;
+    step_start.positions.resize(turns.size());
+    step_start.velocities.resize(turns.size());
+    for (unsigned int b = 0; b < turns.size(); ++b)
+      {
+        // in the memory of the start of the last step
+        equations.end_state(b,
+                            step_start.positions[b],
+                            step_start.velocities[b]);
+        state.positions[b].swap(step_start.positions[b]);
+        state.velocities[b].swap(step_start.velocities[b]);
+      }
+    state.time += equations.step_size();
+    state.multipliers = equations.multipliers.back();
     history.push(equations.step_size(),
                  equations.increments,
                  equations.multipliers);
-    step_start = state;
     iteration.accept();
-
-    const unsigned int last = tableau.n_stages() - 1;
-    state.time += equations.step_size();
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      {
-        const NodalVector x = equations.position(last, b);
-        state.velocities[b] = equations.velocity(last, b);
-        state.positions[b]  = x;
-      }
-    state.multipliers = equations.multipliers[last];
     update_laws(state, step_start);
   }
 

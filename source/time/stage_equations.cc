@@ -47,6 +47,10 @@ namespace ACF
   {
     state = &new_state;
     tau   = step_size;
+    if (system.n_marker_values() == 0)
+      return;
+    start_markers      = system.marker_values(state->positions);
+    start_marker_rates = system.marker_values(state->velocities);
   }
 
 
@@ -88,13 +92,14 @@ namespace ACF
 
 
 
-  NodalVector
-  StageEquations::velocity(const unsigned int stage,
-                           const unsigned int body) const
+  void
+  StageEquations::end_state(const unsigned int body,
+                            NodalVector &x,
+                            NodalVector &v) const
   {
-    NodalVector v;
-    set_velocity(stage, body, v);
-    return v;
+    const unsigned int last = tableau.n_stages() - 1;
+    set_position(last, body, x);
+    set_velocity(last, body, v);
   }
 
 
@@ -107,23 +112,21 @@ namespace ACF
 
 
 
-  SystemVector
-  StageEquations::positions(const unsigned int stage) const
+  Eigen::VectorXd
+  StageEquations::marker_positions(const unsigned int stage) const
   {
-    SystemVector x;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      x.push_back(position(stage, b));
-    return x;
+    return start_markers + tableau.c(stage) * tau * start_marker_rates +
+           system.marker_values(increments[stage]);
   }
 
 
 
-  SystemVector
-  StageEquations::velocities(const unsigned int stage) const
+  Eigen::VectorXd
+  StageEquations::marker_velocities(const unsigned int stage) const
   {
-    SystemVector v;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      v.push_back(velocity(stage, b));
+    Eigen::VectorXd v = start_marker_rates;
+    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+      v += A_inverse(stage, j) / tau * system.marker_values(increments[j]);
     return v;
   }
 
@@ -197,18 +200,14 @@ namespace ACF
 
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        const Eigen::VectorXd s = system.marker_values(stage_positions[i]);
-        Eigen::VectorXd marker_velocities, marker_accelerations;
+        const Eigen::VectorXd s = marker_positions(i);
+        Eigen::VectorXd v, a;
         if (system.needs_velocities())
-          marker_velocities = system.marker_values(stage_velocities[i]);
+          v = marker_velocities(i);
         if (!system.masses().empty())
-          marker_accelerations = system.marker_values(stage_accelerations[i]);
-        const Eigen::VectorXd F = system.marker_forces(time(i),
-                                                       s,
-                                                       marker_velocities,
-                                                       marker_accelerations,
-                                                       multipliers[i],
-                                                       state->law_values);
+          a = system.marker_values(stage_accelerations[i]);
+        const Eigen::VectorXd F = system.marker_forces(
+          time(i), s, v, a, multipliers[i], state->law_values);
         for (unsigned int b = 0; b < n_bodies; ++b)
           system.add_marker_forces(b, F, forces[i][b]);
         constraints[i] = -system.constraint_residual(time(i), s);
@@ -223,7 +222,8 @@ namespace ACF
   {
     StageConstraints residual;
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-      residual.push_back(system.constraint_residual(positions(i), time(i)));
+      residual.push_back(
+        system.constraint_residual(time(i), marker_positions(i)));
     return residual;
   }
 
@@ -246,8 +246,12 @@ namespace ACF
             return frame->rotation;
           return {};
         };
-        const std::optional<Matrix3> at_start = rotation_of(
-          mean_deformation_gradient(body.operators(), state->positions[b]));
+        // linear in positions
+        const Matrix3 start =
+          mean_deformation_gradient(body.operators(), state->positions[b]);
+        const Matrix3 rate =
+          mean_deformation_gradient(body.operators(), state->velocities[b]);
+        const std::optional<Matrix3> at_start = rotation_of(start);
         if (!at_start)
           throw SimulationError("Body '" + body.name() +
                                 "' is turned inside out at time " +
@@ -258,7 +262,8 @@ namespace ACF
         for (unsigned int i = 0; i < n_stages; ++i)
           {
             const Matrix3 F =
-              mean_deformation_gradient(body.operators(), position(i, b));
+              start + tableau.c(i) * tau * rate +
+              mean_deformation_gradient(body.operators(), increments[i][b]);
             result.stages[i][b] = rotation_of(F).value_or(*at_start);
             mean += F / n_stages;
           }
@@ -339,10 +344,10 @@ namespace ACF
     Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.n_constraints());
     for (unsigned int i = 0; i < n; ++i)
       {
-        s += system.marker_values(positions(i)) / n;
+        s += marker_positions(i) / n;
         lambda += multipliers[i] / n;
         if (system.needs_velocities())
-          v += system.marker_values(velocities(i)) / n;
+          v += marker_velocities(i) / n;
       }
     return system.linearize(
       state->time + 0.5 * tau, s, v, lambda, state->law_values);
@@ -368,10 +373,10 @@ namespace ACF
             }
         if (system.n_marker_values() == 0)
           continue;
-        const Eigen::VectorXd s = system.marker_values(positions(i));
+        const Eigen::VectorXd s = marker_positions(i);
         Eigen::VectorXd v       = Eigen::VectorXd::Zero(s.size());
         if (system.needs_velocities())
-          v = system.marker_values(velocities(i));
+          v = marker_velocities(i);
         tangent.linearize_markers(
           i,
           system.linearize(time(i), s, v, multipliers[i], state->law_values));

@@ -36,21 +36,24 @@ namespace ACF
 
   void
   StageHistory::push(const double step_size,
-                     const StageVector &increments,
+                     StageVector &increments,
                      const StageConstraints &multipliers)
   {
     const double before = steps.empty() ? 0 : steps.front().size;
     if (steps.size() < 2)
-      steps.emplace_front();
+      {
+        steps.emplace_front();
+        steps.front().increments = increments;
+      }
     else
       {
         // without a new allocation
         steps.push_front(std::move(steps.back()));
         steps.pop_back();
+        steps.front().increments.swap(increments);
       }
     steps.front().size        = step_size;
     steps.front().size_before = before;
-    steps.front().increments  = increments;
     steps.front().multipliers = multipliers;
   }
 

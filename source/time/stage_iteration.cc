@@ -189,7 +189,6 @@ namespace ACF
       length = std::max(length, body.operators().length);
     length = std::max(1., length);
 
-    StageVector increment;
     double before = std::numeric_limits<double>::infinity();
     for (unsigned int k = 0; k <= max_corrections; ++k)
       {
@@ -207,9 +206,8 @@ namespace ACF
         if (k == max_corrections ||
             !(largest > std::max(1e-14 * length, 2 * constraint_round_off)))
           return;
-        before = largest;
-        if (increment.empty())
-          increment = equations.increments;
+        before                 = largest;
+        StageVector &increment = newton_increment;
         stage_solver->solve_constraints(increment, constraints);
         ++statistics.constraint_corrections;
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
@@ -249,7 +247,9 @@ namespace ACF
     acceleration.reset();
     first_iteration.start_step(equations.step_size(),
                                static_cast<int>(linearization));
-    StageVector increment(equations.increments);
+    if (newton_increment.empty())
+      newton_increment = equations.increments;
+    StageVector &increment = newton_increment;
     StageConstraints constraint_increment(equations.multipliers);
     std::vector<double> norms;
     report.failure.clear();

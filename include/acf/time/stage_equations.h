@@ -42,9 +42,10 @@ namespace ACF
     NodalVector
     position(const unsigned int stage, const unsigned int body) const;
 
-    /** $V_i$ of a body, m/s. */
-    NodalVector
-    velocity(const unsigned int stage, const unsigned int body) const;
+    /** Position and velocity of a body in the last stage, the end of the step,
+     * m and m/s. */
+    void
+    end_state(const unsigned int body, NodalVector &x, NodalVector &v) const;
 
     double
     time(const unsigned int stage) const;
@@ -127,11 +128,13 @@ namespace ACF
     add_material_rotations(const unsigned int body,
                            StageRotations &rotations) const;
 
-    SystemVector
-    positions(const unsigned int stage) const;
+    /** $S U_i = S x_n + c_i \tau S v_n + S Z_i$: only nodes of markers. */
+    Eigen::VectorXd
+    marker_positions(const unsigned int stage) const;
 
-    SystemVector
-    velocities(const unsigned int stage) const;
+    /** $S V_i$ */
+    Eigen::VectorXd
+    marker_velocities(const unsigned int stage) const;
 
     const MultibodySystem &system;
     const ButcherTableau &tableau;
@@ -144,6 +147,9 @@ namespace ACF
 
     const SystemState *state = nullptr;
     double tau               = 0;
+
+    /** $S x_n$ and $S v_n$ */
+    Eigen::VectorXd start_markers, start_marker_rates;
 
     /** States in the stages when the residual was computed last; velocities
      * only if forces depend on them. */

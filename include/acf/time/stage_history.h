@@ -42,10 +42,11 @@ namespace ACF
       exchange(Archive &archive);
     };
 
-    /** Keeps at most two. */
+    /** Keeps at most two.
+     * @param increments are taken; what is left are others of the same sizes */
     void
     push(const double step_size,
-         const StageVector &increments,
+         StageVector &increments,
          const StageConstraints &multipliers);
 
     /** Saves or loads. */

@@ -240,6 +240,9 @@ namespace ACF
     std::unique_ptr<StageTangent> tangent;
     AndersonAcceleration acceleration;
 
+    /** Work space; has no values between calls. */
+    StageVector newton_increment;
+
     /** Of the present prediction. */
     StageRotations rotations;
 
