@@ -271,6 +271,10 @@ namespace ACF
       const auto normalize = [&](FlatVector &x) {
         operators.apply_mass(product, x);
         const double length = std::sqrt(x * product);
+        if (!(length > 0)) // or not a number
+          throw SimulationError(
+            "The modes were not found: vectors that are "
+            "linearly dependent or not finite.");
         x /= length;
         product /= length;
         return length;
@@ -285,11 +289,10 @@ namespace ACF
                 vectors[j].add(-(vectors[i] * product), vectors[i]);
               length = normalize(vectors[j]);
           } while (j > 0 && length < 0.7 && ++passes < max_passes);
-          // or not finite
-          if (!(length >= 0.7))
+          if (j > 0 && length < 0.7)
             throw SimulationError(
               "The modes were not found: vectors that are "
-              "linearly dependent or not finite.");
+              "linearly dependent.");
         }
     }
 

@@ -145,7 +145,7 @@ namespace ACF
     for (unsigned int i = 0; i < n_stages; ++i)
       {
         set_position(i, b, stage_positions[i][b]);
-        if (system.needs_velocities())
+        if (body.is_damped())
           set_velocity(i, b, stage_velocities[i][b]);
         std::vector<ScaledVector> terms;
         for (unsigned int j = 0; j < n_stages; ++j)

@@ -152,7 +152,7 @@ namespace ACF
     Eigen::VectorXd start_markers, start_marker_rates;
 
     /** States in the stages when the residual was computed last; velocities
-     * only if forces depend on them. */
+     * only of damped bodies. */
     StageVector stage_positions;
     StageVector stage_velocities;
     StageVector stage_accelerations;
