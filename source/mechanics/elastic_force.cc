@@ -19,56 +19,31 @@ namespace ACF
 
 
 
-  namespace
-  {
-    bool
-    damped_force(const Body &body,
+  bool
+  internal_force(const Body &body,
                  const NodalVector &positions,
                  const NodalVector &velocities,
                  NodalVector &force,
                  NodalVector &scratch)
-    {
-      const bool is_reduced = body.strain_measure() == StrainMeasure::reduced;
-      if (!damped_reduced_strain_force(body.operators(),
-                                       body.rotation_measure(),
-                                       positions,
-                                       velocities,
-                                       body.mass_damping(),
-                                       body.stiffness_damping(),
-                                       force,
-                                       scratch,
-                                       is_reduced))
-        return false;
-      if (is_reduced)
-        return true;
-      if (!body.reference().green_lagrange().force(positions, scratch))
-        return false;
-      force += scratch;
-      return true;
-    }
-  } // namespace
-
-
-
-  bool
-  internal_forces(const Body &body,
-                  const std::vector<const NodalVector *> &positions,
-                  const std::vector<const NodalVector *> &velocities,
-                  const std::vector<NodalVector *> &forces,
-                  std::vector<NodalVector> &scratch)
   {
-    if (!body.is_damped() && body.strain_measure() == StrainMeasure::reduced)
-      return reduced_strain_forces(
-        body.operators(), body.rotation_measure(), positions, forces, scratch);
-    if (scratch.empty())
-      scratch.emplace_back(body.operators().n_unknowns());
-    for (unsigned int i = 0; i < positions.size(); ++i)
-      if (!(body.is_damped()
-              ? damped_force(
-                  body, *positions[i], *velocities[i], *forces[i], scratch[0])
-              : elastic_force(body, *positions[i], *forces[i], scratch[0])
-                  .has_value()))
-        return false;
+    if (!body.is_damped())
+      return elastic_force(body, positions, force, scratch).has_value();
+    const bool is_reduced = body.strain_measure() == StrainMeasure::reduced;
+    if (!damped_reduced_strain_force(body.operators(),
+                                     body.rotation_measure(),
+                                     positions,
+                                     velocities,
+                                     body.mass_damping(),
+                                     body.stiffness_damping(),
+                                     force,
+                                     scratch,
+                                     is_reduced))
+      return false;
+    if (is_reduced)
+      return true;
+    if (!body.reference().green_lagrange().force(positions, scratch))
+      return false;
+    force += scratch;
     return true;
   }
 

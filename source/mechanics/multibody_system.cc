@@ -505,6 +505,42 @@ namespace ACF
 
 
 
+  bool
+  MultibodySystem::has_surface_loads(const unsigned int body) const
+  {
+    return std::any_of(surface_loads.begin(),
+                       surface_loads.end(),
+                       [&](const SurfaceLoad &load) {
+                         return load.body() == body;
+                       });
+  }
+
+
+
+  void
+  MultibodySystem::add_surface_loads(const unsigned int body,
+                                     const double t,
+                                     const NodalVector &positions,
+                                     NodalVector &force,
+                                     const double load_factor) const
+  {
+    std::optional<BodyRotation> frame;
+    for (const SurfaceLoad &load : surface_loads)
+      if (load.body() == body)
+        {
+          if (load.depends_on_rotation() && !frame)
+            frame = body_rotation(mean_deformation_gradient(
+                                    system_bodies[body].operators(), positions),
+                                  system_bodies[body].rotation_measure());
+          load.add_force(t,
+                         frame ? frame->rotation : Matrix3(),
+                         force,
+                         load_factor);
+        }
+  }
+
+
+
   void
   MultibodySystem::add_loads(const unsigned int body,
                              const double t,
@@ -520,19 +556,7 @@ namespace ACF
           for (unsigned int i = 0; i < dim; ++i)
             force[dim * a + i] += operators.nodal_masses[a] * acceleration[i];
       }
-    std::optional<BodyRotation> frame;
-    for (const SurfaceLoad &load : surface_loads)
-      if (load.body() == body)
-        {
-          if (load.depends_on_rotation() && !frame)
-            frame =
-              body_rotation(mean_deformation_gradient(operators, positions),
-                            system_bodies[body].rotation_measure());
-          load.add_force(t,
-                         frame ? frame->rotation : Matrix3(),
-                         force,
-                         load_factor);
-        }
+    add_surface_loads(body, t, positions, force, load_factor);
   }
 
 

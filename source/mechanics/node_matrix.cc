@@ -2,12 +2,12 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
+#include <acf/base/huge_pages.h>
 #include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/mechanics/node_matrix.h>
 
-#include <deal.II/base/aligned_vector.h>
 #include <deal.II/base/memory_consumption.h>
 
 #include <algorithm>
@@ -16,56 +16,7 @@ namespace ACF
 {
   namespace
   {
-    // How n vectors are kept for a product: node by node, n_groups times Lanes.
-    template <unsigned int n>
-    struct Layout
-    {
-      // values of two vectors
-      using Lanes                            = Eight;
-      static constexpr unsigned int n_groups = (n + 1) / 2;
-      static constexpr unsigned int n_lanes  = 8 * n_groups;
-    };
-
-    template <>
-    struct Layout<1>
-    {
-      // of one, padded
-      using Lanes                            = Four;
-      static constexpr unsigned int n_groups = 1;
-      static constexpr unsigned int n_lanes  = 4;
-    };
-
-    // Component j of each vector at its three places.
-    template <int j>
-    ACF_INLINE Four
-    splat(const Four &x)
-    {
-      return __builtin_shufflevector(x, x, j, j, j, j);
-    }
-
-    template <int j>
-    ACF_INLINE Eight
-    splat(const Eight &x)
-    {
-      return __builtin_shufflevector(
-        x, x, j, j, j, j, 4 + j, 4 + j, 4 + j, 4 + j);
-    }
-
-    // Column j of the block at p for each vector.
-    ACF_INLINE Four
-    block_column(const double *const p, const unsigned int j, Four)
-    {
-      return Four{p[j], p[3 + j], p[6 + j], 0};
-    }
-
-    ACF_INLINE Eight
-    block_column(const double *const p, const unsigned int j, Eight)
-    {
-      const Eight A = load_lanes<Eight>(p + j);
-      return __builtin_shufflevector(A, A, 0, 3, 6, 6, 0, 3, 6, 6);
-    }
-
-    // Row i.
+    // Row i of the block at p for each vector.
     ACF_INLINE Four
     block_row(const double *const p, const unsigned int i, Four)
     {
@@ -81,29 +32,79 @@ namespace ACF
 
 
 
-    // The kinds of entries: y_a += A_ab x_b and y_b += A_ab^T x_a for an entry
-    // at p.
+    // Component i is the sum over the lanes of s[i].
+    ACF_INLINE Four
+    sums_of_lanes(const Four (&s)[3])
+    {
+      const Four zero = {};
+      const Four s01  = __builtin_shufflevector(s[0], s[1], 0, 4, 2, 6) +
+                       __builtin_shufflevector(s[0], s[1], 1, 5, 3, 7);
+      const Four s2 = __builtin_shufflevector(s[2], zero, 0, 4, 2, 6) +
+                      __builtin_shufflevector(s[2], zero, 1, 5, 3, 7);
+      return __builtin_shufflevector(s01, s2, 0, 1, 4, 5) +
+             __builtin_shufflevector(s01, s2, 2, 3, 6, 7);
+    }
+
+    ACF_INLINE Eight
+    sums_of_lanes(const Eight (&s)[3])
+    {
+      const Four low[3]  = {__builtin_shufflevector(s[0], s[0], 0, 1, 2, 3),
+                            __builtin_shufflevector(s[1], s[1], 0, 1, 2, 3),
+                            __builtin_shufflevector(s[2], s[2], 0, 1, 2, 3)};
+      const Four high[3] = {__builtin_shufflevector(s[0], s[0], 4, 5, 6, 7),
+                            __builtin_shufflevector(s[1], s[1], 4, 5, 6, 7),
+                            __builtin_shufflevector(s[2], s[2], 4, 5, 6, 7)};
+      return __builtin_shufflevector(
+        sums_of_lanes(low), sums_of_lanes(high), 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+
+
+
+    // The kinds of entries. A row of a product is the sum of those with the
+    // entries on and above the diagonal, and of those with the transposed
+    // entries above it, y_b += A_ab^T x_a.
     struct Block
     {
       static constexpr unsigned int size = 9;
 
       template <typename Lanes>
-      ACF_INLINE static Lanes
-      product(const double *const p, const Lanes &x)
+      struct Row
       {
-        return block_column(p, 0, Lanes()) * splat<0>(x) +
-               block_column(p, 1, Lanes()) * splat<1>(x) +
-               block_column(p, 2, Lanes()) * splat<2>(x);
-      }
+        explicit ACF_INLINE
+        Row(const Lanes &x)
+          : x{splat<0>(x), splat<1>(x), splat<2>(x)}
+        {}
 
-      template <typename Lanes>
-      ACF_INLINE static Lanes
-      transposed_product(const double *const p, const Lanes &x)
-      {
-        return block_row(p, 0, Lanes()) * splat<0>(x) +
-               block_row(p, 1, Lanes()) * splat<1>(x) +
-               block_row(p, 2, Lanes()) * splat<2>(x);
-      }
+        // adds the product with an entry, from the left
+        ACF_INLINE void
+        add(const double *const p, const Lanes &x_b)
+        {
+          ACF_UNROLL
+          for (unsigned int i = 0; i < 3; ++i)
+            sums[i] += block_row(p, i, Lanes()) * x_b;
+        }
+
+        ACF_INLINE Lanes
+        transposed(const double *const p) const
+        {
+          return block_row(p, 0, Lanes()) * x[0] +
+                 block_row(p, 1, Lanes()) * x[1] +
+                 block_row(p, 2, Lanes()) * x[2];
+        }
+
+        // the fourth of four lanes, where x is zero, is a number of another
+        // row
+        ACF_INLINE Lanes
+        sum() const
+        {
+          return sums_of_lanes(sums);
+        }
+
+        // components of x at all places
+        Lanes x[3];
+        // lanes of row i
+        Lanes sums[3] = {};
+      };
     };
 
     struct Scalar
@@ -111,18 +112,34 @@ namespace ACF
       static constexpr unsigned int size = 1;
 
       template <typename Lanes>
-      ACF_INLINE static Lanes
-      product(const double *const p, const Lanes &x)
+      struct Row
       {
-        return *p * x;
-      }
+        explicit ACF_INLINE
+        Row(const Lanes &x)
+          : x(x)
+        {}
 
-      template <typename Lanes>
-      ACF_INLINE static Lanes
-      transposed_product(const double *const p, const Lanes &x)
-      {
-        return *p * x;
-      }
+        ACF_INLINE void
+        add(const double *const p, const Lanes &x_b)
+        {
+          total += *p * x_b;
+        }
+
+        ACF_INLINE Lanes
+        transposed(const double *const p) const
+        {
+          return *p * x;
+        }
+
+        ACF_INLINE Lanes
+        sum() const
+        {
+          return total;
+        }
+
+        Lanes x;
+        Lanes total = {};
+      };
     };
 
 
@@ -141,36 +158,55 @@ namespace ACF
 
 
 
+    // Row a of n vectors, for those that are at the shift.
+    template <unsigned int n, typename Entry, typename Lanes>
+    ACF_INLINE void
+    multiply_row(const Rows &rows,
+                 const std::size_t a,
+                 const std::size_t shift,
+                 double *const y)
+    {
+      constexpr unsigned int distance  = 4 * n;
+      const NodeGraph &graph           = rows.graph;
+      const std::size_t n_entries      = graph.n_upper(a);
+      const unsigned int *const column = graph.upper_columns(a);
+      const double *const entries =
+        rows.values + Entry::size * graph.upper_start[a];
+      const double *const x = rows.x + shift;
+      const Lanes x_a       = load_lanes<Lanes>(x + distance * a);
+      typename Entry::template Row<Lanes> row(x_a);
+      row.add(entries, x_a);
+      for (std::size_t e = 1; e < n_entries; ++e)
+        {
+          const double *const A_ab = entries + Entry::size * e;
+          const std::size_t b      = distance * std::size_t(column[e]);
+          row.add(A_ab, load_lanes<Lanes>(x + b));
+          add_lanes(row.transposed(A_ab), y + shift + b);
+        }
+      add_lanes(row.sum(), y + shift + distance * a);
+    }
+
+
+
+    // y needs no values: it becomes zero node by node, when it is reached.
     template <unsigned int n, typename Entry>
     ACF_INLINE void
     multiply_entries(const Rows &rows)
     {
-      using Lanes                     = typename Layout<n>::Lanes;
-      constexpr unsigned int n_groups = Layout<n>::n_groups;
-      constexpr unsigned int n_lanes  = Layout<n>::n_lanes;
-      constexpr unsigned int width    = n_lanes / n_groups;
-      const NodeGraph &graph          = rows.graph;
-      double *const y                 = rows.y - n_lanes * rows.begin;
+      double *const y   = rows.y - 4 * n * rows.begin;
+      std::size_t reach = rows.begin;
       for (std::size_t a = rows.begin; a < rows.end; ++a)
         {
-          const std::size_t n_entries      = graph.n_upper(a);
-          const unsigned int *const column = graph.upper_columns(a);
-          const double *const entries =
-            rows.values + Entry::size * graph.upper_start[a];
-          for (unsigned int g = 0; g < n_groups; ++g)
+          for (; reach <= rows.graph.last_column(a); ++reach)
             {
-              const std::size_t shift = g * width;
-              const Lanes x_a = load_lanes<Lanes>(rows.x + n_lanes * a + shift);
-              Lanes sum       = Entry::product(entries, x_a);
-              for (std::size_t e = 1; e < n_entries; ++e)
-                {
-                  const double *const A_ab = entries + Entry::size * e;
-                  const std::size_t b      = n_lanes * column[e] + shift;
-                  sum += Entry::product(A_ab, load_lanes<Lanes>(rows.x + b));
-                  add_lanes(Entry::transposed_product(A_ab, x_a), y + b);
-                }
-              add_lanes(sum, y + n_lanes * a + shift);
+              ACF_UNROLL
+              for (unsigned int v = 0; v < n; ++v)
+                store_lanes(Four{}, y + 4 * (n * reach + v));
             }
+          if constexpr (n >= 2)
+            multiply_row<n, Entry, Eight>(rows, a, 0, y);
+          if constexpr (n % 2 == 1)
+            multiply_row<n, Entry, Four>(rows, a, 4 * (n - 1), y);
         }
     }
 
@@ -225,8 +261,8 @@ namespace ACF
           parts[p].end   = n_nodes * (p + 1) / n_parts;
           parts[p].reach = parts[p].end;
           for (std::size_t a = parts[p].begin; a < parts[p].end; ++a)
-            parts[p].reach = std::max<std::size_t>(
-              parts[p].reach, graph.column[graph.row_start[a + 1] - 1] + 1);
+            parts[p].reach =
+              std::max<std::size_t>(parts[p].reach, graph.last_column(a) + 1);
         }
       return parts;
     }
@@ -236,38 +272,23 @@ namespace ACF
     template <unsigned int n, typename Entry>
     void
     multiply(const NodeGraph &graph,
-             const std::vector<double> &values,
-             NodalVector *const *const y,
-             const NodalVector *const *const x)
+             const double *const values,
+             NodeLanes &y,
+             const NodeLanes &x)
     {
-      constexpr unsigned int n_lanes = Layout<n>::n_lanes;
-      const std::size_t n_nodes      = graph.n_nodes();
-      for (unsigned int v = 0; v < n; ++v)
+      constexpr unsigned int distance = 4 * n;
+      if (n_ranges(graph.n_nodes()) == 1)
         {
-          AssertDimension(x[v]->size(), 3 * n_nodes);
-          AssertDimension(y[v]->size(), x[v]->size());
+          multiply_rows<n, Entry>(
+            {graph, values, 0, graph.n_nodes(), x.data(), y.data()});
+          return;
         }
-
-      AlignedVector<double> lanes;
-      lanes.resize_fast(n_lanes * n_nodes);
-      run_ranges(n_nodes, [&](const std::size_t begin, const std::size_t end) {
-        for (std::size_t a = begin; a < end; ++a)
-          for (unsigned int v = 0; v < n_lanes / 4; ++v)
-            for (unsigned int i = 0; i < 4; ++i)
-              lanes[n_lanes * a + 4 * v + i] =
-                v < n && i < 3 ? x[v]->begin()[3 * a + i] : 0;
-      });
-
       std::vector<Part> parts = divide(graph);
       run_tasks(parts.size(), [&](const unsigned int p) {
         Part &part = parts[p];
-        part.y.resize(n_lanes * (part.reach - part.begin));
-        multiply_rows<n, Entry>({graph,
-                                 values.data(),
-                                 part.begin,
-                                 part.end,
-                                 lanes.data(),
-                                 part.y.data()});
+        part.y.resize_fast(distance * (part.reach - part.begin));
+        multiply_rows<n, Entry>(
+          {graph, values, part.begin, part.end, x.data(), part.y.data()});
       });
 
       // of the part that has the row and of those before which reach it
@@ -276,37 +297,58 @@ namespace ACF
           {
             const Part &part      = parts[q];
             const std::size_t end = std::min(parts[p].end, part.reach);
-            for (std::size_t a = parts[p].begin; a < end; ++a)
-              for (unsigned int v = 0; v < n; ++v)
-                for (unsigned int i = 0; i < 3; ++i)
-                  {
-                    double &entry = y[v]->begin()[3 * a + i];
-                    entry         = (q == p ? 0 : entry) +
-                            part.y[n_lanes * (a - part.begin) + 4 * v + i];
-                  }
+            for (std::size_t k = distance * parts[p].begin; k < distance * end;
+                 ++k)
+              y.data()[k] =
+                (q == p ? 0 : y.data()[k]) + part.y[k - distance * part.begin];
           }
       });
     }
 
 
 
-    // Two or three vectors at once, as there are stages.
     template <typename Entry>
     void
     multiply(const NodeGraph &graph,
-             const std::vector<double> &values,
+             const double *const values,
+             NodeLanes &y,
+             const NodeLanes &x)
+    {
+      AssertDimension(x.n_nodes(), graph.n_nodes());
+      y.resize(x.n_nodes(), x.n_vectors());
+      switch (x.n_vectors())
+        {
+          case 1:
+            return multiply<1, Entry>(graph, values, y, x);
+          case 2:
+            return multiply<2, Entry>(graph, values, y, x);
+          default:
+            return multiply<3, Entry>(graph, values, y, x);
+        }
+    }
+
+
+
+    // Two or three vectors at once.
+    template <typename Entry>
+    void
+    multiply(const NodeGraph &graph,
+             const double *const values,
              const std::vector<NodalVector *> &y,
              const std::vector<const NodalVector *> &x)
     {
       AssertDimension(y.size(), x.size());
-      unsigned int v = 0;
-      if (x.size() % 3 == 0)
-        for (; v < x.size(); v += 3)
-          multiply<3, Entry>(graph, values, &y[v], &x[v]);
-      for (; v + 2 <= x.size(); v += 2)
-        multiply<2, Entry>(graph, values, &y[v], &x[v]);
-      if (v < x.size())
-        multiply<1, Entry>(graph, values, &y[v], &x[v]);
+      NodeLanes source, product;
+      for (unsigned int v = 0; v < x.size();)
+        {
+          const unsigned int left = x.size() - v;
+          const unsigned int n    = left % 3 == 0 ? 3 : std::min(left, 2U);
+          source.resize(graph.n_nodes(), n);
+          source.read(&x[v]);
+          multiply<Entry>(graph, values, product, source);
+          product.write(&y[v]);
+          v += n;
+        }
     }
   } // namespace
 
@@ -374,7 +416,7 @@ namespace ACF
   void
   ScalarNodeMatrix::vmult(NodalVector &y, const NodalVector &x) const
   {
-    multiply<Scalar>(*node_graph, values, {&y}, {&x});
+    vmult(std::vector<NodalVector *>{&y}, {&x});
   }
 
 
@@ -383,7 +425,15 @@ namespace ACF
   ScalarNodeMatrix::vmult(const std::vector<NodalVector *> &y,
                           const std::vector<const NodalVector *> &x) const
   {
-    multiply<Scalar>(*node_graph, values, y, x);
+    multiply<Scalar>(*node_graph, values.data(), y, x);
+  }
+
+
+
+  void
+  ScalarNodeMatrix::vmult(NodeLanes &y, const NodeLanes &x) const
+  {
+    multiply<Scalar>(*node_graph, values.data(), y, x);
   }
 
 
@@ -416,12 +466,13 @@ namespace ACF
 
 
 
-  // products read up to eight numbers from any of a block on
+  // products read four numbers from any of a block on
   BlockNodeMatrix::BlockNodeMatrix(
     const std::shared_ptr<const NodeGraph> &graph)
     : node_graph(graph)
-    , values(9 * graph->upper_start.back() + 8)
-  {}
+  {
+    resize_in_huge_pages(values, 9 * graph->upper_start.back() + 1);
+  }
 
 
 
@@ -452,7 +503,7 @@ namespace ACF
   void
   BlockNodeMatrix::vmult(NodalVector &y, const NodalVector &x) const
   {
-    multiply<Block>(*node_graph, values, {&y}, {&x});
+    vmult(std::vector<NodalVector *>{&y}, {&x});
   }
 
 
@@ -461,7 +512,15 @@ namespace ACF
   BlockNodeMatrix::vmult(const std::vector<NodalVector *> &y,
                          const std::vector<const NodalVector *> &x) const
   {
-    multiply<Block>(*node_graph, values, y, x);
+    multiply<Block>(*node_graph, values.data(), y, x);
+  }
+
+
+
+  void
+  BlockNodeMatrix::vmult(NodeLanes &y, const NodeLanes &x) const
+  {
+    multiply<Block>(*node_graph, values.data(), y, x);
   }
 
 
@@ -477,6 +536,9 @@ namespace ACF
   void
   BlockNodeMatrix::exchange(Archive &archive)
   {
-    archive("values", values);
+    std::vector<double> entries(values.begin(), values.end());
+    archive("values", entries);
+    AssertDimension(entries.size(), values.size());
+    std::copy(entries.begin(), entries.end(), values.begin());
   }
 } // namespace ACF

@@ -2,6 +2,8 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/parallel.h>
+#include <acf/base/processor.h>
+#include <acf/mechanics/node_lanes.h>
 #include <acf/mechanics/reduced_strain.h>
 
 namespace ACF
@@ -49,22 +51,85 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // The sums of NodalMoments for the nodes from begin to end; the mean is not
+    // divided by the mass.
+    struct AddMoments
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        Four gradient[dim] = {};
+        Four mean          = {};
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            const Four x_a = load_three(x + dim * a);
+            const Four g_a = load_three(g + dim * a);
+            gradient[0] += splat<0>(x_a) * g_a;
+            gradient[1] += splat<1>(x_a) * g_a;
+            gradient[2] += splat<2>(x_a) * g_a;
+            mean += m[a] * x_a;
+          }
+        for (unsigned int i = 0; i < dim; ++i)
+          for (unsigned int j = 0; j < dim; ++j)
+            result.gradient[i][j] = gradient[i][j];
+        for (unsigned int i = 0; i < dim; ++i)
+          result.mean[i] = mean[i];
+      }
+
+      std::size_t begin, end;
+      const double *x, *g, *m;
+      NodalMoments &result;
+    };
+  } // namespace
+
+
+
+  NodalMoments &
+  NodalMoments::operator+=(const NodalMoments &other)
+  {
+    gradient += other.gradient;
+    mean += other.mean;
+    return *this;
+  }
+
+
+
+  NodalMoments
+  add(const NodalMoments &x, const double factor, const NodalMoments &y)
+  {
+    return {x.gradient + factor * y.gradient, x.mean + factor * y.mean};
+  }
+
+
+
+  NodalMoments
+  nodal_moments(const BodyOperators &body, const NodalVector &field)
+  {
+    AssertDimension(field.size(), body.n_unknowns());
+    NodalMoments sums = sum_ranges<NodalMoments>(
+      body.n_nodes, [&](const std::size_t begin, const std::size_t end) {
+        NodalMoments part;
+        run_vectorized(AddMoments{begin,
+                                  end,
+                                  field.begin(),
+                                  body.averaging_vectors.begin(),
+                                  body.nodal_masses.data(),
+                                  part});
+        return part;
+      });
+    sums.mean /= body.mass;
+    return sums;
+  }
+
+
+
   Matrix3
   mean_deformation_gradient(const BodyOperators &body,
                             const NodalVector &positions)
   {
-    AssertDimension(positions.size(), body.n_unknowns());
-    const double *const x = positions.begin();
-    const double *const g = body.averaging_vectors.begin();
-    return sum_ranges<Matrix3>(
-      body.n_nodes, [&](const std::size_t begin, const std::size_t end) {
-        double sum[dim][dim] = {};
-        for (std::size_t a = begin; a < end; ++a)
-          for (unsigned int i = 0; i < dim; ++i)
-            for (unsigned int j = 0; j < dim; ++j)
-              sum[i][j] += x[dim * a + i] * g[dim * a + j];
-        return Matrix3(sum);
-      });
+    return nodal_moments(body, positions).gradient;
   }
 
 
@@ -72,19 +137,7 @@ namespace ACF
   Vector3
   mass_mean(const BodyOperators &body, const NodalVector &field)
   {
-    AssertDimension(field.size(), body.n_unknowns());
-    const double *const x = field.begin();
-    return sum_ranges<Vector3>(body.n_nodes,
-                               [&](const std::size_t begin,
-                                   const std::size_t end) {
-                                 double sum[dim] = {};
-                                 for (std::size_t a = begin; a < end; ++a)
-                                   for (unsigned int i = 0; i < dim; ++i)
-                                     sum[i] +=
-                                       body.nodal_masses[a] * x[dim * a + i];
-                                 return Vector3(sum);
-                               }) /
-           body.mass;
+    return nodal_moments(body, field).mean;
   }
 
 
@@ -217,43 +270,6 @@ namespace ACF
     body.stiffness_matrix.vmult(force, q);
 
     return force_of_products(body, *frame, q, force);
-  }
-
-
-
-  bool
-  reduced_strain_forces(const BodyOperators &body,
-                        const RotationMeasure measure,
-                        const std::vector<const NodalVector *> &positions,
-                        const std::vector<NodalVector *> &forces,
-                        std::vector<NodalVector> &scratch)
-  {
-    const unsigned int n = positions.size();
-    std::vector<std::optional<BodyRotation>> frames(n);
-    std::vector<const NodalVector *> q;
-    scratch.resize(n);
-    for (NodalVector &displacement : scratch)
-      {
-        if (displacement.size() != body.n_unknowns())
-          displacement.reinit(body.n_unknowns(), true);
-        q.push_back(&displacement);
-      }
-    for (unsigned int i = 0; i < n; ++i)
-      {
-        frames[i] =
-          body_rotation(mean_deformation_gradient(body, *positions[i]),
-                        measure);
-        if (!frames[i])
-          return false;
-        co_rotated_displacement(body,
-                                *positions[i],
-                                frames[i]->rotation,
-                                scratch[i]);
-      }
-    body.stiffness_matrix.vmult(forces, q);
-    for (unsigned int i = 0; i < n; ++i)
-      force_of_products(body, *frames[i], *q[i], *forces[i]);
-    return true;
   }
 
 

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/parallel.h>
+#include <acf/solvers/stage_frames.h>
 #include <acf/solvers/stage_solver.h>
 
 #include <deal.II/base/numbers.h>
@@ -35,60 +36,37 @@ namespace ACF
 
 
 
-    // sum_i factor_i R_i^T r_i for one body
-    template <typename Number>
-    void
-    combine_in_body_frame(const StageVector &stages,
-                          const unsigned int body,
-                          const std::vector<Number> &factors,
-                          const StageRotations &rotations,
-                          Number *result)
+    // The rotations of a body in the stages, or the mean one of all.
+    std::vector<const NodeRotations *>
+    frames_of(const StageRotations &rotations,
+              const unsigned int body,
+              const bool are_mean)
     {
-      const auto combine = [&](const std::size_t begin, const std::size_t end) {
-        for (std::size_t a = begin; a < end; ++a)
-          {
-            Number sum[dim] = {};
-            for (unsigned int i = 0; i < factors.size(); ++i)
-              {
-                const Matrix3 &R      = rotations.stages[i][body][a];
-                const double *const r = stages[i][body].begin() + dim * a;
-                for (unsigned int j = 0; j < dim; ++j)
-                  sum[j] += factors[i] *
-                            (R[0][j] * r[0] + R[1][j] * r[1] + R[2][j] * r[2]);
-              }
-            std::copy_n(sum, dim, result + dim * a);
-          }
-      };
-      run_ranges(stages[0][body].size() / dim, combine);
+      std::vector<const NodeRotations *> frames;
+      for (const auto &stage : rotations.stages)
+        frames.push_back(are_mean ? &rotations.mean[body] : &stage[body]);
+      return frames;
     }
 
 
 
-    // z_i += Re(factor_i R_i w) for one body in all stages, or z_i = ...
-    template <typename Number>
-    void
-    add_in_world_frame(const Number *const w,
-                       const std::vector<Number> &factors,
-                       const std::vector<const NodeRotations *> &rotations,
-                       const bool replace,
-                       const unsigned int body,
-                       StageVector &stages)
+    // One body in all stages.
+    std::vector<NodalVector *>
+    stages_of(StageVector &vector, const unsigned int body)
     {
-      const auto add = [&](const std::size_t begin, const std::size_t end) {
-        for (std::size_t a = begin; a < end; ++a)
-          for (unsigned int i = 0; i < factors.size(); ++i)
-            {
-              const Matrix3 &R = (*rotations[i])[a];
-              double real[dim];
-              for (unsigned int j = 0; j < dim; ++j)
-                real[j] = std::real(factors[i] * w[dim * a + j]);
-              double *const z = stages[i][body].begin() + dim * a;
-              for (unsigned int j = 0; j < dim; ++j)
-                z[j] = (replace ? 0 : z[j]) + R[j][0] * real[0] +
-                       R[j][1] * real[1] + R[j][2] * real[2];
-            }
-      };
-      run_ranges(stages[0][body].size() / dim, add);
+      std::vector<NodalVector *> stages;
+      for (SystemVector &stage : vector)
+        stages.push_back(&stage[body]);
+      return stages;
+    }
+
+    std::vector<const NodalVector *>
+    stages_of(const StageVector &vector, const unsigned int body)
+    {
+      std::vector<const NodalVector *> stages;
+      for (const SystemVector &stage : vector)
+        stages.push_back(&stage[body]);
+      return stages;
     }
 
 
@@ -271,8 +249,10 @@ namespace ACF
     if (stages != nullptr)
       {
         run_tasks(n_bodies, [&](const unsigned int b) {
-          combine_in_body_frame(
-            *stages, b, from_stages, rotations, coupled_system.body(b));
+          combine_in_body_frame(stages_of(*stages, b),
+                                from_stages,
+                                frames_of(rotations, b, false),
+                                coupled_system.body(b));
         });
         mu = coupled_system.solve(g);
         solve_counter<Number>(statistics) += n_bodies;
@@ -281,16 +261,11 @@ namespace ACF
       mu = coupled_system.solve_constraints(g);
 
     run_tasks(n_bodies, [&](const unsigned int b) {
-      std::vector<const NodeRotations *> frames;
-      for (unsigned int i = 0; i < n_stages; ++i)
-        frames.push_back(stages != nullptr ? &rotations.stages[i][b]
-                                           : &rotations.mean[b]);
       add_in_world_frame(coupled_system.body(b),
                          to_stages,
-                         frames,
+                         frames_of(rotations, b, stages == nullptr),
                          is_first,
-                         b,
-                         stage_increments);
+                         stages_of(stage_increments, b));
     });
     for (unsigned int i = 0; i < n_stages; ++i)
       for (unsigned int r = 0; r < mu.size(); ++r)
@@ -460,7 +435,10 @@ namespace ACF
           {
             double *const r = systems[i]->body(b);
             if (stages != nullptr)
-              combine_in_body_frame(*stages, b, select, rotations, r);
+              combine_in_body_frame(stages_of(*stages, b),
+                                    select,
+                                    frames_of(rotations, b, false),
+                                    r);
             else
               std::fill(r, r + sum[b].size(), 0.);
             sum[b] = 0;
@@ -484,10 +462,7 @@ namespace ACF
 
     for (unsigned int b = 0; b < n_bodies; ++b)
       {
-        std::vector<const NodeRotations *> frames;
-        for (unsigned int i = 0; i < n_stages; ++i)
-          frames.push_back(stages != nullptr ? &rotations.stages[i][b]
-                                             : &rotations.mean[b]);
+        const auto frames = frames_of(rotations, b, stages == nullptr);
         for (unsigned int j = 0; j < n_stages; ++j)
           {
             std::vector<double> factors;
@@ -497,8 +472,7 @@ namespace ACF
                                factors,
                                frames,
                                j == 0,
-                               b,
-                               stage_increments);
+                               stages_of(stage_increments, b));
           }
       }
   }

@@ -24,9 +24,9 @@ namespace ACF
     increments.assign(tableau.n_stages(), zero);
     multipliers.assign(tableau.n_stages(),
                        Eigen::VectorXd::Zero(system.n_constraints()));
-    stage_positions = stage_velocities = stage_accelerations =
-      StageVector(tableau.n_stages(), SystemVector(system.bodies().size()));
     work.resize(system.bodies().size());
+    position_moments.resize(system.bodies().size());
+    velocity_moments.resize(system.bodies().size());
     marker_nodes.resize(system.bodies().size());
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       if (system.bodies()[b].strain_measure() == StrainMeasure::green_lagrange)
@@ -47,6 +47,12 @@ namespace ACF
   {
     state = &new_state;
     tau   = step_size;
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      {
+        const BodyOperators &body = system.bodies()[b].operators();
+        position_moments[b]       = nodal_moments(body, state->positions[b]);
+        velocity_moments[b]       = nodal_moments(body, state->velocities[b]);
+      }
     if (system.n_marker_values() == 0)
       return;
     start_markers      = system.marker_values(state->positions);
@@ -112,22 +118,58 @@ namespace ACF
 
 
 
-  Eigen::VectorXd
-  StageEquations::marker_positions(const unsigned int stage) const
+  NodalMoments
+  StageEquations::moments(const unsigned int stage, const unsigned int b) const
   {
-    return start_markers + tableau.c(stage) * tau * start_marker_rates +
-           system.marker_values(increments[stage]);
+    return add(
+      add(position_moments[b], tableau.c(stage) * tau, velocity_moments[b]),
+      1,
+      nodal_moments(system.bodies()[b].operators(), increments[stage][b]));
+  }
+
+
+
+  std::vector<Eigen::VectorXd>
+  StageEquations::marker_increments() const
+  {
+    std::vector<Eigen::VectorXd> result;
+    for (const SystemVector &stage : increments)
+      result.push_back(system.marker_values(stage));
+    return result;
   }
 
 
 
   Eigen::VectorXd
-  StageEquations::marker_velocities(const unsigned int stage) const
+  StageEquations::marker_positions(const std::vector<Eigen::VectorXd> &Z,
+                                   const unsigned int stage) const
+  {
+    return start_markers + tableau.c(stage) * tau * start_marker_rates +
+           Z[stage];
+  }
+
+
+
+  Eigen::VectorXd
+  StageEquations::marker_velocities(const std::vector<Eigen::VectorXd> &Z,
+                                    const unsigned int stage) const
   {
     Eigen::VectorXd v = start_marker_rates;
     for (unsigned int j = 0; j < tableau.n_stages(); ++j)
-      v += A_inverse(stage, j) / tau * system.marker_values(increments[j]);
+      v += A_inverse(stage, j) / tau * Z[j];
     return v;
+  }
+
+
+
+  Eigen::VectorXd
+  StageEquations::marker_accelerations(const std::vector<Eigen::VectorXd> &Z,
+                                       const unsigned int stage) const
+  {
+    Eigen::VectorXd a = Eigen::VectorXd::Zero(start_markers.size());
+    for (unsigned int j = 0; j < tableau.n_stages(); ++j)
+      a += A_inverse_squared(stage, j) / (tau * tau) * Z[j];
+    return a;
   }
 
 
@@ -135,40 +177,85 @@ namespace ACF
   bool
   StageEquations::body_residual(const unsigned int b, StageVector &residual)
   {
-    const Body &body                  = system.bodies()[b];
-    const unsigned int n_stages       = tableau.n_stages();
-    const double inverse_square       = 1 / (tau * tau);
-    std::vector<NodalVector> &inertia = work[b].inertia;
-    inertia.resize(n_stages);
-    std::vector<const NodalVector *> positions, velocities, accelerations;
-    std::vector<NodalVector *> forces, inertial_forces;
+    const Body &body = system.bodies()[b];
+    if (!body.is_damped() && body.strain_measure() == StrainMeasure::reduced)
+      return reduced_residual(b, residual);
+    return general_residual(b, residual);
+  }
+
+
+
+  bool
+  StageEquations::reduced_residual(const unsigned int b, StageVector &residual)
+  {
+    const Body &body            = system.bodies()[b];
+    const unsigned int n_stages = tableau.n_stages();
+    NodalMotion motion;
+    motion.position = &state->positions[b];
+    motion.velocity = &state->velocities[b];
+    motion.rates    = A_inverse_squared / (tau * tau);
+    std::vector<NodalVector *> forces;
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        set_position(i, b, stage_positions[i][b]);
-        if (body.is_damped())
-          set_velocity(i, b, stage_velocities[i][b]);
+        motion.times.push_back(tableau.c(i) * tau);
+        motion.increments.push_back(&increments[i][b]);
+        motion.moments.push_back(moments(i, b));
+        motion.gravity.push_back(system.gravity(time(i)));
+        forces.push_back(&residual[i][b]);
+      }
+    if (!reduced_strain_residual(body.operators(),
+                                 body.rotation_measure(),
+                                 motion,
+                                 forces,
+                                 work[b].reduced))
+      return false;
+    if (system.has_surface_loads(b))
+      for (unsigned int i = 0; i < n_stages; ++i)
+        {
+          set_position(i, b, work[b].position);
+          system.add_surface_loads(b, time(i), work[b].position, *forces[i]);
+        }
+    return true;
+  }
+
+
+
+  bool
+  StageEquations::general_residual(const unsigned int b, StageVector &residual)
+  {
+    const Body &body            = system.bodies()[b];
+    const unsigned int n_stages = tableau.n_stages();
+    auto &[reduced, position, velocity, scratch, accelerations, inertia] =
+      work[b];
+    accelerations.resize(n_stages);
+    inertia.resize(n_stages);
+    if (scratch.size() == 0)
+      scratch.reinit(body.operators().n_unknowns());
+    std::vector<const NodalVector *> sources;
+    std::vector<NodalVector *> products;
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
         std::vector<ScaledVector> terms;
         for (unsigned int j = 0; j < n_stages; ++j)
           terms.push_back(
-            {inverse_square * A_inverse_squared(i, j), &increments[j][b]});
-        linear_combination(terms, stage_accelerations[i][b]);
+            {A_inverse_squared(i, j) / (tau * tau), &increments[j][b]});
+        linear_combination(terms, accelerations[i]);
         if (inertia[i].size() == 0)
           inertia[i].reinit(body.operators().n_unknowns());
-        positions.push_back(&stage_positions[i][b]);
-        velocities.push_back(&stage_velocities[i][b]);
-        accelerations.push_back(&stage_accelerations[i][b]);
-        inertial_forces.push_back(&inertia[i]);
-        forces.push_back(&residual[i][b]);
+        sources.push_back(&accelerations[i]);
+        products.push_back(&inertia[i]);
       }
-
-    if (!internal_forces(body, positions, velocities, forces, work[b].forces))
-      return false;
-    body.operators().mass_matrix.vmult(inertial_forces, accelerations);
+    body.operators().mass_matrix.vmult(products, sources);
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        linear_combination({{-1, forces[i]}, {-1, inertial_forces[i]}},
-                           *forces[i]);
-        system.add_loads(b, time(i), *positions[i], *forces[i]);
+        set_position(i, b, position);
+        if (body.is_damped())
+          set_velocity(i, b, velocity);
+        NodalVector &force = residual[i][b];
+        if (!internal_force(body, position, velocity, force, scratch))
+          return false;
+        linear_combination({{-1, &force}, {-1, &inertia[i]}}, force);
+        system.add_loads(b, time(i), position, force);
       }
     return true;
   }
@@ -198,14 +285,15 @@ namespace ACF
     if (system.n_marker_values() == 0)
       return true;
 
+    const std::vector<Eigen::VectorXd> Z = marker_increments();
     for (unsigned int i = 0; i < n_stages; ++i)
       {
-        const Eigen::VectorXd s = marker_positions(i);
+        const Eigen::VectorXd s = marker_positions(Z, i);
         Eigen::VectorXd v, a;
         if (system.needs_velocities())
-          v = marker_velocities(i);
+          v = marker_velocities(Z, i);
         if (!system.masses().empty())
-          a = system.marker_values(stage_accelerations[i]);
+          a = marker_accelerations(Z, i);
         const Eigen::VectorXd F = system.marker_forces(
           time(i), s, v, a, multipliers[i], state->law_values);
         for (unsigned int b = 0; b < n_bodies; ++b)
@@ -220,10 +308,11 @@ namespace ACF
   StageConstraints
   StageEquations::constraint_residual() const
   {
+    const std::vector<Eigen::VectorXd> Z = marker_increments();
     StageConstraints residual;
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       residual.push_back(
-        system.constraint_residual(time(i), marker_positions(i)));
+        system.constraint_residual(time(i), marker_positions(Z, i)));
     return residual;
   }
 
@@ -246,12 +335,8 @@ namespace ACF
             return frame->rotation;
           return {};
         };
-        // linear in positions
-        const Matrix3 start =
-          mean_deformation_gradient(body.operators(), state->positions[b]);
-        const Matrix3 rate =
-          mean_deformation_gradient(body.operators(), state->velocities[b]);
-        const std::optional<Matrix3> at_start = rotation_of(start);
+        const std::optional<Matrix3> at_start =
+          rotation_of(position_moments[b].gradient);
         if (!at_start)
           throw SimulationError("Body '" + body.name() +
                                 "' is turned inside out at time " +
@@ -261,9 +346,7 @@ namespace ACF
         Matrix3 mean;
         for (unsigned int i = 0; i < n_stages; ++i)
           {
-            const Matrix3 F =
-              start + tableau.c(i) * tau * rate +
-              mean_deformation_gradient(body.operators(), increments[i][b]);
+            const Matrix3 F     = moments(i, b).gradient;
             result.stages[i][b] = rotation_of(F).value_or(*at_start);
             mean += F / n_stages;
           }
@@ -315,8 +398,7 @@ namespace ACF
         // stress would make the matrix too stiff
         const NodalVector &x = state->positions[b];
         const auto frame =
-          body_rotation(mean_deformation_gradient(operators, x),
-                        body.rotation_measure());
+          body_rotation(position_moments[b].gradient, body.rotation_measure());
         if (!frame)
           return {};
         NodalVector local(operators.n_unknowns());
@@ -342,12 +424,13 @@ namespace ACF
     Eigen::VectorXd s      = Eigen::VectorXd::Zero(system.n_marker_values());
     Eigen::VectorXd v      = s;
     Eigen::VectorXd lambda = Eigen::VectorXd::Zero(system.n_constraints());
+    const std::vector<Eigen::VectorXd> Z = marker_increments();
     for (unsigned int i = 0; i < n; ++i)
       {
-        s += marker_positions(i) / n;
+        s += marker_positions(Z, i) / n;
         lambda += multipliers[i] / n;
         if (system.needs_velocities())
-          v += marker_velocities(i) / n;
+          v += marker_velocities(Z, i) / n;
       }
     return system.linearize(
       state->time + 0.5 * tau, s, v, lambda, state->law_values);
@@ -362,6 +445,7 @@ namespace ACF
                             std::string &failure) const
   {
     tangent.reset(tau, rotations);
+    const std::vector<Eigen::VectorXd> Z = marker_increments();
     for (unsigned int i = 0; i < tableau.n_stages(); ++i)
       {
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
@@ -373,10 +457,10 @@ namespace ACF
             }
         if (system.n_marker_values() == 0)
           continue;
-        const Eigen::VectorXd s = marker_positions(i);
+        const Eigen::VectorXd s = marker_positions(Z, i);
         Eigen::VectorXd v       = Eigen::VectorXd::Zero(s.size());
         if (system.needs_velocities())
-          v = marker_velocities(i);
+          v = marker_velocities(Z, i);
         tangent.linearize_markers(
           i,
           system.linearize(time(i), s, v, multipliers[i], state->law_values));

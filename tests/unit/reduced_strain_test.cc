@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/mechanics/reduced_strain_residual.h>
+
 #include <deal.II/fe/fe_values.h>
 
 #include <cmath>
@@ -106,6 +108,91 @@ TEST(ReducedStrain, MeansAndCoRotatedDisplacement)
               1e-13);
           }
       }
+}
+
+TEST(ReducedStrain, NodalMomentsAreLinear)
+{
+  Random random;
+  for (const Example &example : examples())
+    {
+      const BodyOperators &body = example.body;
+      const NodalVector x       = deformed(example, random),
+                        y       = random.nodal_vector(x.size(), 1);
+      Matrix3 gradient;
+      Vector3 sum;
+      for (unsigned int a = 0; a < body.n_nodes; ++a)
+        {
+          gradient += outer_product(node_value(x, a),
+                                    node_value(body.averaging_vectors, a));
+          sum += body.nodal_masses[a] * node_value(x, a);
+        }
+      const NodalMoments moments = nodal_moments(body, x);
+      EXPECT_LT((moments.gradient - gradient).norm(), 1e-12);
+      EXPECT_LT((moments.mean - sum / body.mass).norm(), 1e-13);
+
+      NodalVector both(x);
+      both.add(0.3, y);
+      const NodalMoments of_both = nodal_moments(body, both),
+                         added   = add(moments, 0.3, nodal_moments(body, y));
+      EXPECT_LT((of_both.gradient - added.gradient).norm(), 1e-12);
+      EXPECT_LT((of_both.mean - added.mean).norm(), 1e-13);
+    }
+}
+
+// Against the force, product with the mass matrix and gravity, each alone.
+TEST(ReducedStrain, ResidualsAtSeveralTimes)
+{
+  Random random;
+  double error = 0;
+  for (const Example &example : examples())
+    for (const auto &measure : measures)
+      for (unsigned int n = 1; n <= 3; ++n)
+        {
+          const BodyOperators &body = example.body;
+          const NodalVector x       = deformed(example, random),
+                            v       = random.nodal_vector(x.size(), 1);
+          const double scale        = example.force_scale();
+          // with inertial forces as large as the elastic ones
+          NodalMotion motion{&x, &v, {}, {}, {}, {}, {}};
+          motion.rates = Eigen::MatrixXd::Random(n, n) * scale / body.mass;
+          std::vector<NodalVector> z, residuals(n, NodalVector(x.size()));
+          std::vector<NodalVector *> targets;
+          for (unsigned int i = 0; i < n; ++i)
+            z.push_back(random.nodal_vector(x.size(), 1e-2));
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              motion.times.push_back(1e-2 * (i + 1));
+              motion.increments.push_back(&z[i]);
+              motion.gravity.push_back(random.vector(0.01 * scale / body.mass));
+              NodalVector position(x);
+              position.add(motion.times[i], v, 1, z[i]);
+              motion.moments.push_back(nodal_moments(body, position));
+              residuals[i] = 1e10; // to be overwritten
+              targets.push_back(&residuals[i]);
+            }
+          ReducedStrainWork work;
+          // again with the same work space
+          for (unsigned int repetition = 0; repetition < 2; ++repetition)
+            ASSERT_TRUE(reduced_strain_residual(
+              body, measure.first, motion, targets, work));
+
+          for (unsigned int i = 0; i < n; ++i)
+            {
+              NodalVector position(x), acceleration(x.size()),
+                expected(x.size());
+              position.add(motion.times[i], v, 1, z[i]);
+              for (unsigned int j = 0; j < n; ++j)
+                acceleration.add(-motion.rates(i, j), z[j]);
+              for (unsigned int k = 0; k < x.size(); ++k)
+                acceleration[k] += motion.gravity[i][k % dim];
+              body.mass_matrix.vmult(expected, acceleration);
+              expected -= force_of(example, measure.first, position).value;
+              expected -= residuals[i];
+              error = std::max(error, expected.linfty_norm() / scale);
+            }
+        }
+  EXPECT_LT(error, 1e-13);
+  report("residuals of motions", error);
 }
 
 TEST(ReducedStrain, EnergyAgainstIntegralOverElements)
@@ -330,5 +417,22 @@ TEST(ReducedStrain, NothingForInvertedBodies)
         x[5] = nan;
         EXPECT_FALSE(force_of(example, measure.first, x).energy);
         EXPECT_TRUE(force_of(example, measure.first, X).energy);
+
+        // a motion whose second time has no rotation
+        const NodalVector zero(X.size());
+        NodalVector back(X);
+        back *= -1;
+        NodalVector forces[2] = {zero, zero};
+        const NodalMotion motion{&X,
+                                 &zero,
+                                 {0, 0},
+                                 {&zero, &back},
+                                 Eigen::MatrixXd::Identity(2, 2),
+                                 {nodal_moments(example.body, X),
+                                  nodal_moments(example.body, zero)},
+                                 {Vector3(), Vector3()}};
+        ReducedStrainWork work;
+        EXPECT_FALSE(reduced_strain_residual(
+          example.body, measure.first, motion, {&forces[0], &forces[1]}, work));
       }
 }

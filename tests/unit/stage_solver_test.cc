@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/exceptions.h>
+#include <acf/solvers/stage_frames.h>
 #include <acf/solvers/stage_solver.h>
 
 #include <cmath>
@@ -92,6 +93,83 @@ namespace
     EXPECT_LT(statistics.n_bytes, 1.3 * statistics.n_entries * sizeof(Number));
   }
 } // namespace
+
+namespace
+{
+  // Against the definitions; frames of all nodes or one.
+  template <typename Number>
+  double
+  stage_frames_error(const unsigned int n_stages, const bool is_uniform)
+  {
+    const unsigned int n_nodes = 5;
+    Random random;
+    std::vector<NodeRotations> rotations;
+    std::vector<NodalVector> r, z(n_stages, NodalVector(dim * n_nodes));
+    std::vector<Number> factors;
+    std::vector<const NodeRotations *> frames;
+    std::vector<const NodalVector *> sources;
+    std::vector<NodalVector *> targets;
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
+        std::vector<Matrix3> nodes;
+        for (unsigned int a = 0; a < n_nodes; ++a)
+          nodes.push_back(random.rotation());
+        rotations.push_back(is_uniform ? NodeRotations(nodes[0])
+                                       : NodeRotations(nodes));
+        r.push_back(random.nodal_vector(dim * n_nodes, 1));
+        Number factor(0.3 + i);
+        if constexpr (!std::is_same<Number, double>::value)
+          factor += Number(0, 1.7 - i);
+        factors.push_back(factor);
+      }
+    for (unsigned int i = 0; i < n_stages; ++i)
+      {
+        frames.push_back(&rotations[i]);
+        sources.push_back(&r[i]);
+        targets.push_back(&z[i]);
+      }
+
+    std::vector<Number> w(dim * n_nodes, Number(1e10));
+    combine_in_body_frame(sources, factors, frames, w.data());
+    double error = 0;
+    for (unsigned int a = 0; a < n_nodes; ++a)
+      for (unsigned int j = 0; j < dim; ++j)
+        {
+          Number expected(0);
+          for (unsigned int i = 0; i < n_stages; ++i)
+            expected += factors[i] * (node_value(r[i], a) * rotations[i][a])[j];
+          error = std::max(error, std::abs(w[dim * a + j] - expected));
+        }
+
+    for (const bool replace : {true, false})
+      {
+        const std::vector<NodalVector> before = z;
+        add_in_world_frame(w.data(), factors, frames, replace, targets);
+        for (unsigned int i = 0; i < n_stages; ++i)
+          for (unsigned int a = 0; a < n_nodes; ++a)
+            {
+              Vector3 real;
+              for (unsigned int j = 0; j < dim; ++j)
+                real[j] = std::real(factors[i] * w[dim * a + j]);
+              Vector3 expected = rotations[i][a] * real;
+              if (!replace)
+                expected += node_value(before[i], a);
+              error = std::max(error, (node_value(z[i], a) - expected).norm());
+            }
+      }
+    return error;
+  }
+} // namespace
+
+TEST(StageFrames, AgainstTheirDefinitions)
+{
+  for (const unsigned int n_stages : {1, 2, 3})
+    for (const bool is_uniform : {true, false})
+      {
+        EXPECT_LT(stage_frames_error<double>(n_stages, is_uniform), 1e-13);
+        EXPECT_LT(stage_frames_error<Complex>(n_stages, is_uniform), 1e-13);
+      }
+}
 
 TEST(ShiftedFactorization, AgainstDenseFactorization)
 {

@@ -33,6 +33,50 @@ namespace ACF
   /** That of the processor which runs the program. */
   Processor
   present_processor();
+
+  /**
+   * Calls loop(), which is compiled once for each instruction set. It is a
+   * class whose operator() and all that this calls are ACF_INLINE.
+   */
+  template <typename Loop>
+  void
+  run_vectorized(const Loop &loop);
+
+
+
+  namespace internal
+  {
+#if defined(__x86_64__)
+    template <typename Loop>
+    ACF_AVX512 void
+    run_avx512(const Loop &loop)
+    {
+      loop();
+    }
+
+    template <typename Loop>
+    ACF_AVX2 void
+    run_avx2(const Loop &loop)
+    {
+      loop();
+    }
+#endif
+  } // namespace internal
+
+
+
+  template <typename Loop>
+  void
+  run_vectorized(const Loop &loop)
+  {
+#if defined(__x86_64__)
+    if (present_processor() == Processor::avx512)
+      return internal::run_avx512(loop);
+    if (present_processor() == Processor::avx2)
+      return internal::run_avx2(loop);
+#endif
+    loop();
+  }
 } // namespace ACF
 
 #endif

@@ -31,22 +31,19 @@ namespace ACF
                 NodalVector &scratch);
 
   /**
-   * Elastic forces with Rayleigh damping at several states, see
-   * damped_reduced_strain_force(): the damping is that of the small strain in
-   * the frame of the body for either measure.
+   * Elastic force with Rayleigh damping, see damped_reduced_strain_force(): the
+   * damping is that of the small strain in the frame of the body for either
+   * measure.
    *
-   * @param positions $x_a$, m, of each state
    * @param velocities $v_a$, m/s; not used for a body without damping
-   * @param[out] forces N; must have the sizes of @p positions
-   * @param scratch work space, for the next call
-   * @return false, and no forces, if the body is turned inside out
+   * @return false, and no force, if the body is turned inside out
    */
   bool
-  internal_forces(const Body &body,
-                  const std::vector<const NodalVector *> &positions,
-                  const std::vector<const NodalVector *> &velocities,
-                  const std::vector<NodalVector *> &forces,
-                  std::vector<NodalVector> &scratch);
+  internal_force(const Body &body,
+                 const NodalVector &positions,
+                 const NodalVector &velocities,
+                 NodalVector &force,
+                 NodalVector &scratch);
 
 
 

@@ -299,6 +299,18 @@ namespace ACF
                      const SystemState &state,
                      NodalVector &force) const;
 
+    /** Whether add_surface_loads() adds any. */
+    bool
+    has_surface_loads(const unsigned int body) const;
+
+    /** Adds surface loads, times a factor. */
+    void
+    add_surface_loads(const unsigned int body,
+                      const double t,
+                      const NodalVector &positions,
+                      NodalVector &force,
+                      const double load_factor = 1) const;
+
     /** Adds gravity and surface loads, times a factor. */
     void
     add_loads(const unsigned int body,

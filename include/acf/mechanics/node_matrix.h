@@ -4,7 +4,7 @@
 #ifndef acf_mechanics_node_matrix_h
 #define acf_mechanics_node_matrix_h
 
-#include <acf/base/types.h>
+#include <acf/mechanics/node_lanes.h>
 
 #include <algorithm>
 #include <memory>
@@ -59,6 +59,12 @@ namespace ACF
       return &column[row_start[row + 1] - n_upper(row)];
     }
 
+    unsigned int
+    last_column(const unsigned int row) const
+    {
+      return column[row_start[row + 1] - 1];
+    }
+
     /** Bytes held. */
     std::size_t
     memory_consumption() const;
@@ -88,6 +94,10 @@ namespace ACF
     void
     vmult(const std::vector<NodalVector *> &y,
           const std::vector<const NodalVector *> &x) const;
+
+    /** @param[out] y is resized; its fourth numbers mean nothing */
+    void
+    vmult(NodeLanes &y, const NodeLanes &x) const;
 
     /** Row sums $\sum_b m_{ab}$, size n_nodes. */
     std::vector<double>
@@ -165,6 +175,10 @@ namespace ACF
     vmult(const std::vector<NodalVector *> &y,
           const std::vector<const NodalVector *> &x) const;
 
+    /** @param[out] y is resized; its fourth numbers mean nothing */
+    void
+    vmult(NodeLanes &y, const NodeLanes &x) const;
+
     const NodeGraph &
     graph() const
     {
@@ -189,7 +203,7 @@ namespace ACF
 
   private:
     std::shared_ptr<const NodeGraph> node_graph;
-    std::vector<double> values;
+    AlignedVector<double> values;
   };
 } // namespace ACF
 

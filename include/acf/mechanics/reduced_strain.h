@@ -29,6 +29,27 @@ namespace ACF
   Vector3
   mass_mean(const BodyOperators &body, const NodalVector &field);
 
+  /** Sums over the nodes of a field. */
+  struct NodalMoments
+  {
+    /** Its mean gradient, see mean_deformation_gradient(). */
+    Matrix3 gradient;
+
+    /** See mass_mean(). */
+    Vector3 mean;
+
+    NodalMoments &
+    operator+=(const NodalMoments &other);
+  };
+
+  /** Both, for which the field is read once. They are linear in it. */
+  NodalMoments
+  nodal_moments(const BodyOperators &body, const NodalVector &field);
+
+  /** Those of x + factor y. */
+  NodalMoments
+  add(const NodalMoments &x, const double factor, const NodalMoments &y);
+
   /**
    * Angular velocity $R \dot\varphi$ of the frame of a body in the world,
    * rad/s,
@@ -98,20 +119,6 @@ namespace ACF
                        const NodalVector &positions,
                        NodalVector &force,
                        NodalVector &scratch);
-
-  /**
-   * The forces of reduced_strain_force() at several positions, for which the
-   * stiffness matrix is read once.
-   * See theory (3.2), theory (3.3).
-   * @param scratch work space, for the next call
-   * @return false if a mean deformation gradient has no rotation
-   */
-  bool
-  reduced_strain_forces(const BodyOperators &body,
-                        const RotationMeasure measure,
-                        const std::vector<const NodalVector *> &positions,
-                        const std::vector<NodalVector *> &forces,
-                        std::vector<NodalVector> &scratch);
 
   /**
    * The force of reduced_strain_force() with Rayleigh damping in the rotating

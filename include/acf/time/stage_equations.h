@@ -4,6 +4,7 @@
 #ifndef acf_time_stage_equations_h
 #define acf_time_stage_equations_h
 
+#include <acf/mechanics/reduced_strain_residual.h>
 #include <acf/solvers/stage_tangent.h>
 
 #include <string>
@@ -49,6 +50,20 @@ namespace ACF
 
     double
     time(const unsigned int stage) const;
+
+    /** Sums over $x_n$ of a body. */
+    const NodalMoments &
+    start_moments(const unsigned int body) const
+    {
+      return position_moments[body];
+    }
+
+    /** Sums over $v_n$. */
+    const NodalMoments &
+    start_velocity_moments(const unsigned int body) const
+    {
+      return velocity_moments[body];
+    }
 
     /**
      * Forces that are missing for equilibrium, and minus the residuals of the
@@ -116,25 +131,47 @@ namespace ACF
                  const unsigned int body,
                  NodalVector &v) const;
 
+    /** Sums over $U_i$. */
+    NodalMoments
+    moments(const unsigned int stage, const unsigned int body) const;
+
     /**
-     * What a body and its loads alone give to the residual, and its states in
-     * the stages.
+     * What a body and its loads alone give to the residual.
      * @return false if the body is turned inside out
      */
     bool
     body_residual(const unsigned int body, StageVector &residual);
 
+    /** That of a body without damping that has the reduced strain. */
+    bool
+    reduced_residual(const unsigned int body, StageVector &residual);
+
+    /** That of any other. */
+    bool
+    general_residual(const unsigned int body, StageVector &residual);
+
     void
     add_material_rotations(const unsigned int body,
                            StageRotations &rotations) const;
 
-    /** $S U_i = S x_n + c_i \tau S v_n + S Z_i$: only nodes of markers. */
+    /** $S Z_i$ of all stages: only nodes of markers. */
+    std::vector<Eigen::VectorXd>
+    marker_increments() const;
+
+    /** $S U_i = S x_n + c_i \tau S v_n + S Z_i$ */
     Eigen::VectorXd
-    marker_positions(const unsigned int stage) const;
+    marker_positions(const std::vector<Eigen::VectorXd> &increments,
+                     const unsigned int stage) const;
 
     /** $S V_i$ */
     Eigen::VectorXd
-    marker_velocities(const unsigned int stage) const;
+    marker_velocities(const std::vector<Eigen::VectorXd> &increments,
+                      const unsigned int stage) const;
+
+    /** $S \dot V_i$ */
+    Eigen::VectorXd
+    marker_accelerations(const std::vector<Eigen::VectorXd> &increments,
+                         const unsigned int stage) const;
 
     const MultibodySystem &system;
     const ButcherTableau &tableau;
@@ -151,17 +188,15 @@ namespace ACF
     /** $S x_n$ and $S v_n$ */
     Eigen::VectorXd start_markers, start_marker_rates;
 
-    /** States in the stages when the residual was computed last; velocities
-     * only of damped bodies. */
-    StageVector stage_positions;
-    StageVector stage_velocities;
-    StageVector stage_accelerations;
+    /** See start_moments(). */
+    std::vector<NodalMoments> position_moments, velocity_moments;
 
-    /** Work space of each body. */
+    /** Work space of each body, as far as it is used. */
     struct Work
     {
-      std::vector<NodalVector> inertia;
-      std::vector<NodalVector> forces;
+      ReducedStrainWork reduced;
+      NodalVector position, velocity, scratch;
+      std::vector<NodalVector> accelerations, inertia;
     };
     std::vector<Work> work;
   };
