@@ -37,23 +37,72 @@ namespace ACF
 
 
 
-    // One function per instruction set.
-#define ACF_PRODUCTS(name, attributes)                      \
-  attributes double product_##name(const double *const x,   \
-                                   const double *const y,   \
-                                   const std::size_t begin, \
-                                   const std::size_t end)   \
-  {                                                         \
-    return multiply_and_add(x, y, begin, end);              \
-  }
+    // Numbers of x that stay in the first-level cache.
+    constexpr std::size_t block_size = 1024;
 
-    ACF_PRODUCTS(any, )
-#if defined(__x86_64__)
-    ACF_PRODUCTS(avx2, ACF_AVX2)
-    ACF_PRODUCTS(avx512, ACF_AVX512)
-#endif
-#undef ACF_PRODUCTS
+    // Sums of the products with vectors y.
+    struct AddProducts
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        for (std::size_t first = begin; first < end; first += block_size)
+          {
+            const std::size_t last =
+              first + block_size < end ? first + block_size : end;
+            for (std::size_t k = 0; k < n_vectors; ++k)
+              sums[k] += multiply_and_add(x, y[k], first, last);
+          }
+      }
+
+      const double *x;
+      const double *const *y;
+      std::size_t n_vectors;
+      std::size_t begin, end;
+      double *sums;
+    };
+
+    // that sum_ranges() adds up
+    struct Sums
+    {
+      Sums &
+      operator+=(const Sums &other)
+      {
+        for (std::size_t k = 0; k < values.size(); ++k)
+          values[k] += other.values[k];
+        return *this;
+      }
+
+      std::vector<double> values;
+    };
   } // namespace
+
+
+
+  std::vector<double>
+  dot_products(const NodalVector &x, const std::vector<const NodalVector *> &y)
+  {
+    std::vector<const double *> vectors;
+    for (const NodalVector *const vector : y)
+      {
+        AssertDimension(x.size(), vector->size());
+        vectors.push_back(vector->begin());
+      }
+    return sum_ranges<Sums>(x.size(),
+                            [&](const std::size_t begin,
+                                const std::size_t end) {
+                              Sums sums;
+                              sums.values.resize(y.size());
+                              run_vectorized(AddProducts{x.begin(),
+                                                         vectors.data(),
+                                                         y.size(),
+                                                         begin,
+                                                         end,
+                                                         sums.values.data()});
+                              return sums;
+                            })
+      .values;
+  }
 
 
 
@@ -63,13 +112,10 @@ namespace ACF
     AssertDimension(x.size(), y.size());
     return sum_ranges<double>(
       x.size(), [&](const std::size_t begin, const std::size_t end) {
-#if defined(__x86_64__)
-        if (present_processor() == Processor::avx512)
-          return product_avx512(x.begin(), y.begin(), begin, end);
-        if (present_processor() == Processor::avx2)
-          return product_avx2(x.begin(), y.begin(), begin, end);
-#endif
-        return product_any(x.begin(), y.begin(), begin, end);
+        double sum           = 0;
+        const double *vector = y.begin();
+        run_vectorized(AddProducts{x.begin(), &vector, 1, begin, end, &sum});
+        return sum;
       });
   }
 } // namespace ACF

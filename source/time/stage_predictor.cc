@@ -10,6 +10,24 @@
 
 namespace ACF
 {
+  namespace
+  {
+    // Puts the products with the newest defect in front of the others.
+    void
+    prepend(const Eigen::VectorXd &row, Eigen::MatrixXd &products)
+    {
+      const unsigned int n = row.size();
+      Eigen::MatrixXd updated(n, n);
+      updated.bottomRightCorner(n - 1, n - 1) =
+        products.topLeftCorner(n - 1, n - 1);
+      updated.row(0) = row.transpose();
+      updated.col(0) = row;
+      products       = updated;
+    }
+  } // namespace
+
+
+
   StagePredictor::StagePredictor(const MultibodySystem &system,
                                  const ButcherTableau &tableau)
     : system(system)
@@ -157,30 +175,24 @@ namespace ACF
     extrapolate(history, -1, newest.multipliers);
     defects.push_front(std::move(newest));
 
-    // appends the products with the newest one in front of the others
-    const unsigned int n = defects.size();
-    const auto update    = [&](Eigen::MatrixXd &matrix, const auto &product) {
-      Eigen::MatrixXd updated(n, n);
-      updated.bottomRightCorner(n - 1, n - 1) =
-        matrix.topLeftCorner(n - 1, n - 1);
-      for (unsigned int k = 0; k < n; ++k)
-        {
-          updated(0, k) = 0;
-          for (unsigned int i = 0; i < increments.size(); ++i)
-            updated(0, k) += product(defects[0], defects[k], i);
-          updated(k, 0) = updated(0, k);
-        }
-      matrix = updated;
-    };
     for (unsigned int b = 0; b < products.size(); ++b)
-      update(products[b],
-             [b](const Defect &x, const Defect &y, const unsigned int i) {
-               return dot_product(x.increments[i][b], y.increments[i][b]);
-             });
-    update(multiplier_products,
-           [](const Defect &x, const Defect &y, const unsigned int i) {
-             return x.multipliers[i].dot(y.multipliers[i]);
-           });
+      {
+        Eigen::VectorXd row = Eigen::VectorXd::Zero(defects.size());
+        for (unsigned int i = 0; i < increments.size(); ++i)
+          {
+            std::vector<const NodalVector *> vectors;
+            for (const Defect &defect : defects)
+              vectors.push_back(&defect.increments[i][b]);
+            const std::vector<double> sums = dot_products(*vectors[0], vectors);
+            row += Eigen::Map<const Eigen::VectorXd>(sums.data(), sums.size());
+          }
+        prepend(row, products[b]);
+      }
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(defects.size());
+    for (unsigned int k = 0; k < defects.size(); ++k)
+      for (unsigned int i = 0; i < increments.size(); ++i)
+        row(k) += defects[0].multipliers[i].dot(defects[k].multipliers[i]);
+    prepend(row, multiplier_products);
   }
 
 

@@ -232,6 +232,9 @@ TEST(DotProduct, AnySize)
         EXPECT_NEAR(dot_product(x[0], x[1]),
                     static_cast<double>(expected),
                     1e-15 * size);
+        const std::vector<double> products = dot_products(x[0], {&x[1], &x[0]});
+        EXPECT_NEAR(products[0], static_cast<double>(expected), 1e-15 * size);
+        EXPECT_EQ(products[1], dot_product(x[0], x[0]));
       }
 }
 
