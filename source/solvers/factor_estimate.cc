@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/solvers/factor_estimate.h>
+#include <acf/solvers/joint_columns.h>
 #include <acf/solvers/supernodal_factor.h>
 
 #include <algorithm>
@@ -46,8 +47,10 @@ namespace ACF
     const std::size_t n_bytes    = is_real ? sizeof(double) : sizeof(Complex);
     const unsigned int n_columns = dim * body.functionals().size();
     estimate.n_entries           = tree.n_entries();
-    estimate.column_bytes = (single ? n_bytes / 2 : n_bytes) * n_columns *
-                            body.operators().n_unknowns();
+    const unsigned int n_rows    = body.operators().n_unknowns();
+    estimate.column_bytes =
+      is_real ? JointColumns<double>::n_bytes(n_rows, n_columns, single)
+              : JointColumns<Complex>::n_bytes(n_rows, n_columns, single);
     estimate.work_bytes     = n_bytes * largest_work(tree);
     estimate.n_setup_solves = n_columns + (single ? 4 : 1);
     if (is_real)

@@ -29,7 +29,7 @@ namespace ACF
           solutions[(dim * p + j) * n_unknowns + dim * functionals[p].nodes[k] +
                     j] = functionals[p].weights[k];
     factor.solve(solutions.data(), dim * functionals.size());
-    columns = JointColumns<Number>(std::move(solutions),
+    columns = JointColumns<Number>(solutions,
                                    n_unknowns,
                                    factor.statistics().single_precision);
 

@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
+#include <acf/base/huge_pages.h>
 #include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 #include <acf/solvers/joint_columns.h>
-
-#include <algorithm>
-#include <array>
 
 namespace ACF
 {
@@ -15,20 +13,9 @@ namespace ACF
   {
     typedef float EightSingle __attribute__((vector_size(32)));
 
-    // Columns that are subtracted at once, and numbers of x that stay in the
-    // first-level cache meanwhile.
-    constexpr unsigned int group_size = 6;
-    constexpr std::size_t block_size  = 1024;
-
-    // Some columns and their factors, real and imaginary part.
-    struct ColumnGroup
-    {
-      unsigned int n_columns = 0;
-      std::array<const float *, group_size> columns;
-      std::array<std::array<double, 2>, group_size> factors;
-    };
-
-
+    // Numbers of each column that are side by side: a line of the cache in
+    // single precision.
+    constexpr std::size_t block_size = 16;
 
     ACF_INLINE Eight
     load(const float *const p)
@@ -36,108 +23,183 @@ namespace ACF
       return __builtin_convertvector(load_lanes<EightSingle>(p), Eight);
     }
 
-
-
-    // x -= Y F for the numbers from begin to end. Complex ones are pairs, so
-    // both are even then.
-    template <bool is_complex>
-    ACF_INLINE void
-    subtract_group(const ColumnGroup &group,
-                   const std::size_t begin,
-                   const std::size_t end,
-                   double *const x)
+    ACF_INLINE Eight
+    load(const double *const p)
     {
-      std::size_t i = begin;
-      for (; i + 8 <= end; i += 8)
-        {
-          Eight sum = load_lanes<Eight>(x + i);
-          for (unsigned int k = 0; k < group.n_columns; ++k)
-            {
-              const Eight y   = load(group.columns[k] + i);
-              const double re = group.factors[k][0];
-              sum -= re * y;
-              if constexpr (is_complex)
-                {
-                  const double im = group.factors[k][1];
-                  const Eight signs{-im, im, -im, im, -im, im, -im, im};
-                  sum -= signs *
-                         __builtin_shufflevector(y, y, 1, 0, 3, 2, 5, 4, 7, 6);
-                }
-            }
-          store_lanes(sum, x + i);
-        }
-      for (; i < end; i += (is_complex ? 2 : 1))
-        for (unsigned int k = 0; k < group.n_columns; ++k)
-          {
-            const float *const y = group.columns[k] + i;
-            const double re      = group.factors[k][0];
-            x[i] -= re * y[0];
-            if constexpr (is_complex)
-              {
-                const double im = group.factors[k][1];
-                x[i] += im * y[1];
-                x[i + 1] -= re * y[1] + im * y[0];
-              }
-          }
+      return load_lanes<Eight>(p);
     }
 
 
 
-    // One function per instruction set.
-#define ACF_GROUPS(name, attributes)                              \
-  template <bool is_complex>                                      \
-  attributes void subtract_group_##name(const ColumnGroup &group, \
-                                        const std::size_t begin,  \
-                                        const std::size_t end,    \
-                                        double *const x)          \
-  {                                                               \
-    subtract_group<is_complex>(group, begin, end, x);             \
-  }
-
-    ACF_GROUPS(any, )
-#if defined(__x86_64__)
-    ACF_GROUPS(avx2, ACF_AVX2)
-    ACF_GROUPS(avx512, ACF_AVX512)
-#endif
-#undef ACF_GROUPS
-
-    using Subtract = void (*)(const ColumnGroup &,
-                              const std::size_t,
-                              const std::size_t,
-                              double *);
-
-    template <bool is_complex>
-    Subtract
-    choose_subtract()
+    // x -= Y F for the blocks from begin to end. Complex numbers are pairs.
+    template <typename Real, bool is_complex>
+    struct SubtractProduct
     {
-#if defined(__x86_64__)
-      if (present_processor() == Processor::avx512)
-        return subtract_group_avx512<is_complex>;
-      if (present_processor() == Processor::avx2)
-        return subtract_group_avx2<is_complex>;
-#endif
-      return subtract_group_any<is_complex>;
+      ACF_INLINE void
+      operator()() const
+      {
+        for (std::size_t block = begin; block < end; ++block)
+          {
+            const std::size_t first = block * block_size;
+            if (first + block_size <= n)
+              subtract(block, x + first);
+            else
+              {
+                double rest[block_size] = {};
+                for (std::size_t i = first; i < n; ++i)
+                  rest[i - first] = x[i];
+                subtract(block, rest);
+                for (std::size_t i = first; i < n; ++i)
+                  x[i] = rest[i - first];
+              }
+          }
+      }
+
+      ACF_INLINE void
+      subtract(const std::size_t block, double *const x_block) const
+      {
+        // products with the real and the imaginary parts of F
+        Eight real[2] = {}, imaginary[2] = {};
+        const Real *y = values + block * n_columns * block_size;
+        for (std::size_t k = 0; k < n_columns; ++k, y += block_size)
+          {
+            ACF_UNROLL
+            for (unsigned int half = 0; half < 2; ++half)
+              {
+                const Eight y_half = load(y + 8 * half);
+                real[half] += factors[2 * k] * y_half;
+                if (is_complex)
+                  imaginary[half] += factors[2 * k + 1] * y_half;
+              }
+          }
+        ACF_UNROLL
+        for (unsigned int half = 0; half < 2; ++half)
+          {
+            if (is_complex)
+              {
+                const Eight signs{-1, 1, -1, 1, -1, 1, -1, 1};
+                real[half] +=
+                  signs *
+                  __builtin_shufflevector(
+                    imaginary[half], imaginary[half], 1, 0, 3, 2, 5, 4, 7, 6);
+              }
+            add_lanes(-real[half], x_block + 8 * half);
+          }
+      }
+
+      const Real *values;
+      std::size_t n_columns;
+
+      // real and imaginary part of each
+      const double *factors;
+      double *x;
+
+      // numbers of x
+      std::size_t n;
+      std::size_t begin, end;
+    };
+
+
+
+    template <typename Number>
+    constexpr std::size_t n_parts = sizeof(Number) / sizeof(double);
+
+
+
+    template <typename Number, typename Real>
+    void
+    subtract(const dealii::AlignedVector<Real> &values,
+             const Eigen::Matrix<Number, Eigen::Dynamic, 1> &F,
+             const std::size_t n_rows,
+             Number *const x)
+    {
+      std::vector<double> factors;
+      for (unsigned int k = 0; k < F.size(); ++k)
+        {
+          factors.push_back(std::real(F(k)));
+          factors.push_back(std::imag(F(k)));
+        }
+      const std::size_t n        = n_parts<Number> * n_rows;
+      const std::size_t n_blocks = (n + block_size - 1) / block_size;
+      run_ranges(
+        n_blocks,
+        [&](const std::size_t begin, const std::size_t end) {
+          run_vectorized(SubtractProduct<Real, (n_parts<Number> > 1)>{
+            values.data(),
+            static_cast<std::size_t>(F.size()),
+            factors.data(),
+            reinterpret_cast<double *>(x),
+            n,
+            begin,
+            end});
+        },
+        smallest_range / block_size);
+    }
+
+
+
+    // Where number i of a column is.
+    std::size_t
+    index_of(const std::size_t i,
+             const std::size_t column,
+             const std::size_t n_columns)
+    {
+      return (i / block_size * n_columns + column) * block_size +
+             i % block_size;
+    }
+
+
+
+    std::size_t
+    padded(const std::size_t n)
+    {
+      return (n + block_size - 1) / block_size * block_size;
+    }
+
+
+
+    template <typename Real>
+    void
+    store(const double *const numbers,
+          const std::size_t n,
+          const std::size_t n_columns,
+          dealii::AlignedVector<Real> &values)
+    {
+      resize_in_huge_pages(values, padded(n) * n_columns);
+      for (std::size_t k = 0; k < n_columns; ++k)
+        for (std::size_t i = 0; i < n; ++i)
+          values[index_of(i, k, n_columns)] = numbers[k * n + i];
     }
   } // namespace
 
 
 
   template <typename Number>
-  JointColumns<Number>::JointColumns(std::vector<Number> columns,
+  JointColumns<Number>::JointColumns(const std::vector<Number> &columns,
                                      const std::size_t n_rows,
                                      const bool single)
     : n_rows(n_rows)
+    , n_columns(columns.size() / n_rows)
   {
-    if (!single)
-      {
-        values = std::move(columns);
-        return;
-      }
     const double *const numbers =
       reinterpret_cast<const double *>(columns.data());
-    single_values.assign(numbers,
-                         numbers +
-                           columns.size() * sizeof(Number) / sizeof(double));
+    const std::size_t n = n_parts<Number> * n_rows;
+    if (single)
+      store(numbers, n, n_columns, single_values);
+    else
+      store(numbers, n, n_columns, double_values);
+  }
+
+
+
+  template <typename Number>
+  std::size_t
+  JointColumns<Number>::n_bytes(const std::size_t n_rows,
+                                const std::size_t n_columns,
+                                const bool single)
+  {
+    return padded(n_parts<Number> * n_rows) * n_columns *
+           (single ? sizeof(float) : sizeof(double));
   }
 
 
@@ -147,14 +209,12 @@ namespace ACF
   JointColumns<Number>::column(const std::size_t index) const
   {
     std::vector<Number> result(n_rows);
-    if (single_values.empty())
-      std::copy_n(values.begin() + index * n_rows, n_rows, result.begin());
-    else
+    double *const numbers = reinterpret_cast<double *>(result.data());
+    for (std::size_t i = 0; i < n_parts<Number> * n_rows; ++i)
       {
-        const std::size_t n = n_rows * sizeof(Number) / sizeof(double);
-        std::copy_n(single_values.begin() + index * n,
-                    n,
-                    reinterpret_cast<double *>(result.data()));
+        const std::size_t place = index_of(i, index, n_columns);
+        numbers[i] =
+          single_values.empty() ? double_values[place] : single_values[place];
       }
     return result;
   }
@@ -165,36 +225,11 @@ namespace ACF
   void
   JointColumns<Number>::subtract_product(const Vector &F, Number *const x) const
   {
+    AssertDimension(static_cast<std::size_t>(F.size()), n_columns);
     if (single_values.empty())
-      {
-        using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
-        Eigen::Map<Vector>(x, n_rows).noalias() -=
-          Eigen::Map<const Matrix>(values.data(), n_rows, F.size()) * F;
-        return;
-      }
-
-    constexpr bool is_complex = sizeof(Number) > sizeof(double);
-    const std::size_t n       = n_rows * sizeof(Number) / sizeof(double);
-    std::vector<ColumnGroup> groups;
-    for (unsigned int k = 0; k < F.size(); ++k)
-      if (F(k) != Number(0))
-        {
-          if (groups.empty() || groups.back().n_columns == group_size)
-            groups.emplace_back();
-          ColumnGroup &group             = groups.back();
-          group.columns[group.n_columns] = single_values.data() + k * n;
-          group.factors[group.n_columns] = {{std::real(F(k)), std::imag(F(k))}};
-          ++group.n_columns;
-        }
-    const Subtract subtract = choose_subtract<is_complex>();
-    double *const numbers   = reinterpret_cast<double *>(x);
-    run_ranges(n / 2, [&](const std::size_t begin, const std::size_t end) {
-      // of pairs
-      const std::size_t last = (end == n / 2 ? n : 2 * end);
-      for (std::size_t i = 2 * begin; i < last; i += block_size)
-        for (const ColumnGroup &group : groups)
-          subtract(group, i, std::min(i + block_size, last), numbers);
-    });
+      subtract(double_values, F, n_rows, x);
+    else
+      subtract(single_values, F, n_rows, x);
   }
 
 

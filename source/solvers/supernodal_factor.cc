@@ -246,24 +246,32 @@ namespace ACF
 
 
     // The largest absolute value of n numbers.
-    double
-    largest_value(const double *const x, const std::size_t n)
+    struct LargestValue
     {
-      Eight largest = {};
-      std::size_t k = 0;
-      for (; k + 8 <= n; k += 8)
-        {
-          const Eight value = load_lanes<Eight>(x + k);
-          const Eight size  = value < Eight{} ? -value : value;
-          largest           = size > largest ? size : largest;
-        }
-      double result = 0;
-      for (unsigned int i = 0; i < 8; ++i)
-        result = std::max(result, largest[i]);
-      for (; k < n; ++k)
-        result = std::max(result, std::abs(x[k]));
-      return result;
-    }
+      ACF_INLINE void
+      operator()() const
+      {
+        Eight largest = {};
+        std::size_t k = 0;
+        for (; k + 8 <= n; k += 8)
+          {
+            const Eight value = load_lanes<Eight>(x + k);
+            const Eight size  = value < Eight{} ? -value : value;
+            largest           = size > largest ? size : largest;
+          }
+        for (unsigned int i = 0; i < 8; ++i)
+          result = largest[i] > result ? largest[i] : result;
+        for (; k < n; ++k)
+          {
+            const double size = x[k] < 0 ? -x[k] : x[k];
+            result            = size > result ? size : result;
+          }
+      }
+
+      const double *x;
+      std::size_t n;
+      double &result;
+    };
   } // namespace
 
 
@@ -284,8 +292,9 @@ namespace ACF
       , tree(*factor.tree)
       // a node that is copied to the last rows writes one number more
       , longest(Kernels::round_up(factor.longest_block + 1))
-      , x(node_size * (tree.n_unknowns() / dim))
-    {}
+    {
+      x.resize_fast(node_size * (tree.n_unknowns() / dim));
+    }
 
     void
     read(Number *const vectors)
@@ -297,8 +306,9 @@ namespace ACF
           double inverse_scale = 1;
           if (std::is_same<Real, float>::value)
             {
-              const double size =
-                largest_value(&plane(vectors[v * n], 0), planes * n);
+              double size = 0;
+              run_vectorized(
+                LargestValue{&plane(vectors[v * n], 0), planes * n, size});
               // the inverse of what is too small would be infinite
               if (size >= std::numeric_limits<double>::min())
                 {
@@ -312,8 +322,11 @@ namespace ACF
               Real *const node =
                 x.data() + place * node_size + v * planes * quad;
               for (unsigned int p = 0; p < planes; ++p)
-                for (unsigned int i = 0; i < dim; ++i)
-                  node[p * quad + i] = plane(value[i], p) * inverse_scale;
+                {
+                  for (unsigned int i = 0; i < dim; ++i)
+                    node[p * quad + i] = plane(value[i], p) * inverse_scale;
+                  node[p * quad + dim] = 0;
+                }
             }
         }
     }

@@ -4,6 +4,8 @@
 #ifndef acf_solvers_joint_columns_h
 #define acf_solvers_joint_columns_h
 
+#include <deal.II/base/aligned_vector.h>
+
 #include <Eigen/Dense>
 
 #include <complex>
@@ -32,7 +34,7 @@ namespace ACF
      * @param n_rows of a column
      * @param single whether to keep them in single precision
      */
-    JointColumns(std::vector<Number> columns,
+    JointColumns(const std::vector<Number> &columns,
                  const std::size_t n_rows,
                  const bool single);
 
@@ -46,19 +48,30 @@ namespace ACF
     void
     subtract_product(const Vector &F, Number *x) const;
 
+    /** What is held. */
     std::size_t
     n_bytes() const
     {
-      return values.size() * sizeof(Number) +
-             single_values.size() * sizeof(float);
+      return n_bytes(n_rows, n_columns, double_values.empty());
     }
 
-  private:
-    std::size_t n_rows = 0;
+    /** What would be. */
+    static std::size_t
+    n_bytes(const std::size_t n_rows,
+            const std::size_t n_columns,
+            const bool single);
 
-    /** One of both. Real and imaginary parts side by side. */
-    std::vector<Number> values;
-    std::vector<float> single_values;
+  private:
+    std::size_t n_rows    = 0;
+    std::size_t n_columns = 0;
+
+    /**
+     * One of both: some rows of all columns, one column after the other, then
+     * the next rows, so that a product reads them in one direction. Real and
+     * imaginary parts side by side; what is missing to the last rows is zero.
+     */
+    dealii::AlignedVector<double> double_values;
+    dealii::AlignedVector<float> single_values;
   };
 } // namespace ACF
 
