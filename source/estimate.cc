@@ -27,15 +27,15 @@ namespace ACF
     // step, and work in bytes that the processor reads from its caches in the
     // same time.
     constexpr double n_iterations     = 1.5;
-    constexpr double solve_work       = 3;     // per byte that a solve reads
-    constexpr double unknown_work     = 1.1e4; // per unknown and iteration
+    constexpr double solve_work       = 1;     // per byte that a solve reads
+    constexpr double unknown_work     = 2.5e3; // per unknown and iteration
     constexpr double constraint_work  = 6e5;   // per constraint and iteration
     constexpr double integration_work = 250;   // per node of a cell,
                                                // integration point and stage
     constexpr double entry_work = 3.8e3;       // per entry that is factorised
 
     // Measured times of steps and factorisations over estimated ones.
-    constexpr double least_ratio   = 0.3;
+    constexpr double least_ratio   = 0.5;
     constexpr double largest_ratio = 2.7;
 
     // The stack of fronts is copied when it grows.
