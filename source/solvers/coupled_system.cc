@@ -126,7 +126,7 @@ namespace ACF
       return;
 
     // H and D, with one pattern for all times
-    Triplets triplets;
+    triplets.clear();
     const auto append = [&](const MarkerLinearization::Triplets &entries,
                             const Number factor) {
       for (const auto &entry : entries)
@@ -172,6 +172,34 @@ namespace ACF
 
 
 
+  namespace
+  {
+    // scale R_p C_pq R_q^T for a block C_pq of compliances
+    template <typename Number, typename Compliance>
+    Eigen::Matrix<Number, dim, dim>
+    rotated_compliance(const Compliance &compliance,
+                       const unsigned int row,
+                       const unsigned int column,
+                       const Eigen::Matrix3d &R_p,
+                       const Eigen::Matrix3d &R_q,
+                       const Number scale)
+    {
+      Eigen::Matrix<Number, dim, dim> half, result;
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          half(i, j) = scale * (R_p(i, 0) * compliance(row, column + j) +
+                                R_p(i, 1) * compliance(row + 1, column + j) +
+                                R_p(i, 2) * compliance(row + 2, column + j));
+      for (unsigned int i = 0; i < dim; ++i)
+        for (unsigned int j = 0; j < dim; ++j)
+          result(i, j) = half(i, 0) * R_q(j, 0) + half(i, 1) * R_q(j, 1) +
+                         half(i, 2) * R_q(j, 2);
+      return result;
+    }
+  } // namespace
+
+
+
   template <typename Number>
   double
   CoupledSystem<Number>::add_compliances(Triplets &triplets) const
@@ -184,19 +212,24 @@ namespace ACF
     double squared_compliance = 0;
     for (unsigned int b = 0; b < factors.size(); ++b)
       {
-        const auto &markers      = system.body_markers(b);
-        const Eigen::Matrix3d *R = rotations.data() + system.first_marker(b);
-        const unsigned int first = dim * system.first_marker(b);
+        const auto &markers        = system.body_markers(b);
+        const Eigen::Matrix3d *R   = rotations.data() + system.first_marker(b);
+        const unsigned int first   = dim * system.first_marker(b);
+        const Number inverse_scale = Number(1) / scales[b];
         for (unsigned int q = 0; q < markers.size(); ++q)
           for (unsigned int p = 0; p < markers.size(); ++p)
             {
               const Eigen::Matrix<Number, dim, dim> C =
-                R[p] *
-                factors[b]->compliance().template block<dim, dim>(
-                  dim * markers[p], dim * markers[q]) *
-                R[q].transpose() / scales[b];
-              squared_compliance =
-                std::max(squared_compliance, C.cwiseAbs2().maxCoeff());
+                rotated_compliance<Number>(factors[b]->compliance(),
+                                           dim * markers[p],
+                                           dim * markers[q],
+                                           R[p],
+                                           R[q],
+                                           inverse_scale);
+              for (unsigned int i = 0; i < dim; ++i)
+                for (unsigned int j = 0; j < dim; ++j)
+                  squared_compliance =
+                    std::max(squared_compliance, std::norm(C(i, j)));
               for (unsigned int j = 0; j < dim; ++j)
                 {
                   const unsigned int k = first + dim * q + j;

@@ -184,6 +184,9 @@ namespace ACF
     std::vector<std::size_t> offsets;
     std::vector<std::vector<unsigned int>> groups;
 
+    /** Work space: entries of a matrix. */
+    Triplets triplets;
+
     RepeatedPattern<Number> H_transposed;
     RepeatedPattern<Number> D;
     RepeatedPattern<Number> marker_matrix;
