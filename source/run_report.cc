@@ -164,20 +164,21 @@ namespace ACF
                                        {"complex", statistics.complex_solves},
                                        {"setup", statistics.setup_solves}};
     json["force evaluations"]       = statistics.force_evaluations;
-    json["marker factorisations"]   = statistics.marker_factorizations;
-    json["constraint corrections"]  = statistics.constraint_corrections;
-    json["stress evaluations"]      = statistics.stress_evaluations;
-    json["validity checks"]         = statistics.validity_checks;
-    json["vtu files"]               = statistics.vtu_files;
-    json["hdf5 files"]              = statistics.hdf5_files;
-    json["probe rows"]              = statistics.probe_rows;
-    json["checkpoints"]             = statistics.checkpoints;
-    json["restarts"]                = statistics.restarts;
-    json["constraints"]             = system.n_constraints();
-    json["repeated constraints"]    = system.n_repeated_constraints();
-    json["constraint residual"]     = {
-          {"positions [m or rad]", statistics.constraint_residual},
-          {"velocities [m/s or rad/s]", statistics.constraint_velocity_residual}};
+    json["constraint factorisations"] = statistics.constraint_factorizations;
+    json["marker factorisations"]     = statistics.marker_factorizations;
+    json["constraint corrections"]    = statistics.constraint_corrections;
+    json["stress evaluations"]        = statistics.stress_evaluations;
+    json["validity checks"]           = statistics.validity_checks;
+    json["vtu files"]                 = statistics.vtu_files;
+    json["hdf5 files"]                = statistics.hdf5_files;
+    json["probe rows"]                = statistics.probe_rows;
+    json["checkpoints"]               = statistics.checkpoints;
+    json["restarts"]                  = statistics.restarts;
+    json["constraints"]               = system.n_constraints();
+    json["repeated constraints"]      = system.n_repeated_constraints();
+    json["constraint residual"]       = {
+            {"positions [m or rad]", statistics.constraint_residual},
+            {"velocities [m/s or rad/s]", statistics.constraint_velocity_residual}};
     json["different bodies"] = system.n_reference_bodies();
     for (const Body &body : system.bodies())
       json["bodies"][body.name()] = {

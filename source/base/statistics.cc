@@ -59,6 +59,7 @@ namespace ACF
     sum("complex solves", complex_solves);
     sum("setup solves", setup_solves);
     sum("force evaluations", force_evaluations);
+    sum("constraint factorisations", constraint_factorizations);
     sum("marker factorisations", marker_factorizations);
     sum("constraint corrections", constraint_corrections);
     largest("constraint residual", constraint_residual);

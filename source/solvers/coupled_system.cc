@@ -24,6 +24,8 @@ namespace ACF
     for (const Body &body : system.bodies())
       n += body.operators().n_unknowns();
     values.resize(n);
+    for (unsigned int b = 0; b < system.bodies().size(); ++b)
+      first_values.push_back(dim * system.first_marker(b));
   }
 
 
@@ -60,17 +62,16 @@ namespace ACF
     // ", the constraints of the joints 'a', 'b' depend on each other", if so.
     std::string
     dependent_joints(const MultibodySystem &system,
-                     const MarkerLinearization &linearization)
+                     const Eigen::SparseMatrix<double> &D)
     {
-      Eigen::SparseMatrix<double> D(system.n_constraints(),
-                                    system.n_marker_values());
-      D.setFromTriplets(linearization.constraints.begin(),
-                        linearization.constraints.end());
-      for (const auto &entry : linearization.constraints)
-        if (!std::isfinite(entry.value()))
-          return ", the gradient of a constraint of the joint '" +
-                 system.joints()[system.joint_of_row(entry.row())].name +
-                 "' is not finite";
+      using Iterator = Eigen::SparseMatrix<double>::InnerIterator;
+
+      for (unsigned int k = 0; k < D.cols(); ++k)
+        for (Iterator entry(D, k); entry; ++entry)
+          if (!std::isfinite(entry.value()))
+            return ", the gradient of a constraint of the joint '" +
+                   system.joints()[system.joint_of_row(entry.row())].name +
+                   "' is not finite";
       const Eigen::MatrixXd null_space =
         find_repeated_constraints(D * D.transpose()).null_space;
       std::set<std::string> names;
@@ -119,6 +120,12 @@ namespace ACF
           }
       }
     group_bodies();
+    compliances.resize(n_bodies);
+    for (unsigned int b = 0; b < n_bodies; ++b)
+      compliances[b] = {&factors[b]->compliance(),
+                        rotations.data() + system.first_marker(b),
+                        &system.body_markers(b),
+                        Number(1) / scales[b]};
     const unsigned int n = system.n_marker_values();
     const unsigned int m = system.n_constraints();
     prepare_changes(terms);
@@ -135,19 +142,46 @@ namespace ACF
     append(linearization.stiffness, coefficients.stiffness);
     append(linearization.damping, coefficients.damping);
     append(linearization.mass, coefficients.mass);
-    H_transposed.assemble(n, n, triplets, !analyzed);
-    triplets.clear();
-    for (const auto &entry : linearization.constraints)
-      triplets.emplace_back(entry.row(), entry.col(), Number(entry.value()));
-    D.assemble(m, n, triplets, !analyzed);
+    H_transposed.assemble(n, n, triplets, is_first);
+    marker_sizes.clear();
+    if (!triplets.empty())
+      for (const auto &compliance : compliances)
+        compliance.append_sizes(marker_sizes);
+    D.assemble(m, n, linearization.constraints, is_first);
+    redundancy = linearization.redundancy;
 
+    is_complete = false;
+    if (!changes.empty())
+      factorize_all();
+    else if (m > 0)
+      {
+        if (constraint_system.factorize(
+              compliances, first_values, D.matrix(), redundancy))
+          ++statistics.constraint_factorizations;
+        else
+          factorize_all();
+      }
+    is_first = false;
+  }
+
+
+
+  template <typename Number>
+  void
+  CoupledSystem<Number>::factorize_all()
+  {
     // (I + C H) s + C D^T mu = ..., D s - eps E mu = ...
-    for (auto &triplet : triplets)
-      triplet = Eigen::Triplet<Number>(n + triplet.row(),
-                                       triplet.col(),
-                                       triplet.value());
+    const unsigned int n = system.n_marker_values();
+    const unsigned int m = system.n_constraints();
+    triplets.clear();
+    for (unsigned int k = 0; k < n; ++k)
+      for (typename Eigen::SparseMatrix<double>::InnerIterator entry(D.matrix(),
+                                                                     k);
+           entry;
+           ++entry)
+        triplets.emplace_back(n + entry.row(), k, Number(entry.value()));
     const double compliance = add_compliances(triplets);
-    for (const auto &entry : linearization.redundancy)
+    for (const auto &entry : redundancy)
       triplets.emplace_back(n + entry.row(),
                             n + entry.col(),
                             -compliance * entry.value());
@@ -155,9 +189,8 @@ namespace ACF
 
     const unsigned int n_unknowns = n + m + n_change_unknowns;
     // the pattern is that of the mechanism but for these two
-    const bool pattern_varies =
-      !changes.empty() || !linearization.redundancy.empty();
-    const bool is_new = !analyzed || pattern_varies;
+    const bool pattern_varies = !changes.empty() || !redundancy.empty();
+    const bool is_new         = !analyzed || pattern_varies;
     marker_matrix.assemble(n_unknowns, n_unknowns, triplets, is_new);
     if (is_new)
       marker_system.analyzePattern(marker_matrix.matrix());
@@ -167,7 +200,8 @@ namespace ACF
     if (marker_system.info() != Eigen::Success)
       throw SimulationError(
         "the equations of the joints and force elements are singular" +
-        dependent_joints(system, linearization));
+        dependent_joints(system, D.matrix()));
+    is_complete = true;
   }
 
 
@@ -204,8 +238,6 @@ namespace ACF
   double
   CoupledSystem<Number>::add_compliances(Triplets &triplets) const
   {
-    using Iterator = typename Eigen::SparseMatrix<Number>::InnerIterator;
-
     const unsigned int n = system.n_marker_values();
     for (unsigned int i = 0; i < n; ++i)
       triplets.emplace_back(i, i, Number(1));
@@ -235,7 +267,10 @@ namespace ACF
                   const unsigned int k = first + dim * q + j;
                   const auto add_row   = [&](const auto &columns,
                                            const unsigned int shift) {
-                    for (Iterator entry(columns, k); entry; ++entry)
+                    using Columns = std::decay_t<decltype(columns)>;
+                    for (typename Columns::InnerIterator entry(columns, k);
+                         entry;
+                         ++entry)
                       for (unsigned int i = 0; i < dim; ++i)
                         triplets.emplace_back(first + dim * p + i,
                                               shift + entry.row(),
@@ -327,7 +362,10 @@ namespace ACF
                   triplets.emplace_back(row,
                                         entry.row(),
                                         value * entry.value());
-                for (Iterator entry(D.matrix(), first + k); entry; ++entry)
+                for (Eigen::SparseMatrix<double>::InnerIterator entry(
+                       D.matrix(), first + k);
+                     entry;
+                     ++entry)
                   triplets.emplace_back(row,
                                         n + entry.row(),
                                         value * entry.value());
@@ -372,33 +410,133 @@ namespace ACF
 
   template <typename Number>
   typename CoupledSystem<Number>::Vector
+  CoupledSystem<Number>::constraint_forces(const Vector &mu) const
+  {
+    Vector phi = Vector::Zero(system.n_marker_values());
+    for (unsigned int k = 0; k < phi.size(); ++k)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(D.matrix(), k);
+           entry;
+           ++entry)
+        phi(k) += entry.value() * mu(entry.row());
+    return phi;
+  }
+
+
+
+  template <typename Number>
+  typename CoupledSystem<Number>::Vector
+  CoupledSystem<Number>::constraint_values(const Vector &s) const
+  {
+    Vector g = Vector::Zero(system.n_constraints());
+    for (unsigned int k = 0; k < s.size(); ++k)
+      for (Eigen::SparseMatrix<double>::InnerIterator entry(D.matrix(), k);
+           entry;
+           ++entry)
+        g(entry.row()) += entry.value() * s(k);
+    return g;
+  }
+
+
+
+  template <typename Number>
+  typename CoupledSystem<Number>::Vector
+  CoupledSystem<Number>::marker_displacements(const Vector &phi) const
+  {
+    Vector s(phi.size());
+    for (unsigned int b = 0; b < compliances.size(); ++b)
+      {
+        const unsigned int n = compliances[b].n_values();
+        s.segment(first_values[b], n) =
+          compliances[b].displacements(phi.segment(first_values[b], n));
+      }
+    return s;
+  }
+
+
+
+  template <typename Number>
+  double
+  CoupledSystem<Number>::largest_displacement(const Vector &s) const
+  {
+    double result = 0;
+    for (unsigned int p = 0; p < marker_sizes.size(); ++p)
+      result = std::max(result,
+                        s.template segment<dim>(dim * p).squaredNorm() /
+                          marker_sizes[p]);
+    return std::sqrt(result);
+  }
+
+
+
+  template <typename Number>
+  bool
+  CoupledSystem<Number>::eliminate_markers(const Vector &uncoupled,
+                                           const Vector &g,
+                                           Vector &mu,
+                                           Vector &phi)
+  {
+    const bool constrained = g.size() > 0;
+    mu                     = g;
+    if (constrained)
+      mu = constraint_system.solve(constraint_values(uncoupled) - g);
+    phi = constraint_forces(mu);
+    if (H_transposed.matrix().nonZeros() == 0)
+      return true;
+
+    Vector change     = uncoupled - marker_displacements(phi);
+    const double size = largest_displacement(change);
+    double contracted = size;
+    while (true)
+      {
+        Vector force            = H_transposed.matrix().transpose() * change;
+        const Vector unbalanced = marker_displacements(force);
+        const double next       = largest_displacement(unbalanced);
+        if (!(next > 1e-10 * size))
+          return true;
+        if (next > 0.1 * contracted)
+          return false;
+        contracted = next;
+        if (constrained)
+          {
+            const Vector mu_change =
+              constraint_system.solve(-constraint_values(unbalanced));
+            mu += mu_change;
+            force += constraint_forces(mu_change);
+          }
+        phi += force;
+        change = -marker_displacements(force);
+      }
+  }
+
+
+
+  template <typename Number>
+  typename CoupledSystem<Number>::Vector
   CoupledSystem<Number>::couple(const Vector &uncoupled,
                                 const Vector &g,
                                 const Vector &change_values)
   {
     const unsigned int n = system.n_marker_values();
-    Vector rhs(n + g.size() + n_change_unknowns);
-    rhs << uncoupled, g, change_values;
-    const Vector solution = marker_system.solve(rhs);
-    const Vector mu       = solution.segment(n, g.size());
-    const Vector phi = H_transposed.matrix().transpose() * solution.head(n) +
-                       D.matrix().transpose() * mu;
+    Vector mu, phi, solution;
+    if (is_complete || !eliminate_markers(uncoupled, g, mu, phi))
+      {
+        if (!is_complete)
+          factorize_all();
+        Vector rhs(n + g.size() + n_change_unknowns);
+        rhs << uncoupled, g, change_values;
+        solution = marker_system.solve(rhs);
+        mu       = solution.segment(n, g.size());
+        phi      = H_transposed.matrix().transpose() * solution.head(n) +
+              constraint_forces(mu);
+      }
 
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
-        const auto &markers = system.body_markers(b);
-        if (!markers.empty())
-          {
-            Vector F = Vector::Zero(factors[b]->compliance().rows());
-            for (unsigned int p = 0; p < markers.size(); ++p)
-              {
-                const unsigned int marker = system.first_marker(b) + p;
-                F.template segment<dim>(dim * markers[p]) =
-                  rotations[marker].transpose() *
-                  phi.template segment<dim>(dim * marker) / scales[b];
-              }
-            factors[b]->subtract_columns(F, body(b));
-          }
+        if (!system.body_markers(b).empty())
+          factors[b]->subtract_columns(
+            compliances[b].functional_forces(
+              phi.segment(first_values[b], compliances[b].n_values())),
+            body(b));
         if (!changes.empty() && changes[b].columns.cols() > 0)
           Eigen::Map<Vector>(body(b), factors[b]->size()) -=
             changes[b].solutions *

@@ -143,7 +143,7 @@ check 'nobody watches the validity, but something is said of it' [ -z "$(grep Va
 check 'figures of the validity that nobody has watched' \
   [ -z "$(grep '"validity"' drop-results/statistics.json)" ]
 expect_files drop-results statistics.json used_parameters.prm
-for counter in 'vtu files' 'probe rows' 'stress evaluations' 'validity checks' 'marker factorisations' constraints real \
+for counter in 'vtu files' 'probe rows' 'stress evaluations' 'validity checks' 'constraint factorisations' 'marker factorisations' constraints real \
   'rejected steps' 'joint column memory \[B\]'; do
   expect_statistic drop-results "$counter" 0
 done

@@ -56,9 +56,11 @@ namespace
     return parameters;
   }
 
-  /** In a deformed state in motion, with forces in the joints. */
+  /** In a deformed state in motion, with forces up to a size in the joints. */
   MarkerLinearization
-  random_linearization(const MultibodySystem &system, Random &random)
+  random_linearization(const MultibodySystem &system,
+                       Random &random,
+                       const double joint_force = 1e4)
   {
     SystemVector x = system.placement();
     for (NodalVector &positions : x)
@@ -68,7 +70,7 @@ namespace
     for (double &value : v)
       value = random.number(1);
     for (double &value : lambda)
-      value = random.number(1e4);
+      value = random.number(joint_force);
     return system.linearize(
       0, s, v, lambda, system.law_values(s, Eigen::VectorXd()));
   }
@@ -149,6 +151,77 @@ TEST(CoupledSystem, EverythingAgainstTheDenseSystem)
     }
 }
 
+TEST(CoupledSystem, MarkersAreEliminatedWhereTheirStiffnessIsSmall)
+{
+  // Forces of joints from none to ones as large as those of inertia, and a
+  // spring in their place.
+  struct Case
+  {
+    double joint_force;
+    double spring;
+    bool is_small;
+  };
+
+  Random random;
+  for (const Case &each : {Case{0, 0, true},
+                           Case{1e2, 0, true},
+                           Case{1e5, 0, true},
+                           Case{1e10, 0, false},
+                           Case{0, 1e3, true},
+                           Case{0, 1e10, false}})
+    for (const bool constrained : {true, false})
+      {
+        if (!constrained && each.joint_force > 0)
+          continue;
+        SystemParameters parameters = coupled_parameters();
+        parameters.masses.clear();
+        parameters.force_elements.resize(each.spring > 0 ? 1 : 0);
+        for (ForceElementParameters &element : parameters.force_elements)
+          element.stiffness = {each.spring};
+        if (!constrained)
+          parameters.joints.clear();
+        const MultibodySystem system(parameters, ".");
+
+        const double tau = 1e-4;
+        double error     = 0;
+        Statistics statistics;
+        FactorizationCache cache(statistics);
+        DiagonalizedStageSolver solver(system, radau_iia(2), cache, statistics);
+        const unsigned int n_prepared = 2;
+        for (unsigned int n = 0; n < n_prepared; ++n)
+          {
+            const auto rotations = random_rotations(system, random, 2);
+            const auto linearization =
+              random_linearization(system, random, each.joint_force);
+            const DenseStageSystem dense(
+              system, radau_iia(2), tau, rotations, linearization);
+            solver.prepare(tau, rotations, linearization);
+            // the second one with what the first one has factorised
+            for (unsigned int k = 0; k < 2; ++k)
+              {
+                const Eigen::VectorXd r = dense.random_right_hand_side(random);
+                Stages stages           = dense.unflatten(r);
+                solver.solve(stages.bodies, stages.constraints);
+                error =
+                  std::max(error,
+                           dense.error(dense.flatten(stages), dense.solve(r)));
+              }
+          }
+        const std::string label =
+          "joints with " + std::to_string(each.joint_force) + " N, spring of " +
+          std::to_string(each.spring) + " N/m" +
+          (constrained ? "" : ", no joints");
+        EXPECT_LT(error, 1e-8) << label;
+        EXPECT_EQ(statistics.constraint_factorizations,
+                  constrained ? n_prepared : 0)
+          << label;
+        EXPECT_EQ(statistics.marker_factorizations,
+                  each.is_small ? 0 : n_prepared)
+          << label;
+        report(label + ", against dense", error);
+      }
+}
+
 TEST(CoupledSystem, NodeFramesAndChangesOfLowRank)
 {
   Random random;
@@ -203,6 +276,17 @@ TEST(CoupledSystem, NodeFramesAndChangesOfLowRank)
               error =
                 std::max(error,
                          dense.error(dense.flatten(stages), dense.solve(r)));
+
+              // the same solver without changes from now on
+              const DenseStageSystem unchanged(
+                system, radau_iia(s), tau, rotations, linearization);
+              r      = unchanged.random_right_hand_side(random);
+              stages = unchanged.unflatten(r);
+              solver.prepare(tau, rotations, linearization);
+              solver.solve(stages.bodies, stages.constraints);
+              error = std::max(error,
+                               unchanged.error(unchanged.flatten(stages),
+                                               unchanged.solve(r)));
             }
           EXPECT_LT(error, 1e-8) << with_changes << s;
           report(std::to_string(s) + " stages, frames of nodes" +

@@ -73,7 +73,11 @@ namespace ACF
     /** Evaluations of a body's elastic force. */
     unsigned long force_evaluations = 0;
 
-    /** Factorised systems of the markers of joints and force elements. */
+    /** Factorised systems of the joints' multipliers. */
+    unsigned long constraint_factorizations = 0;
+
+    /** Factorised systems of multipliers and markers of joints and force
+     * elements. */
     unsigned long marker_factorizations = 0;
 
     /** Corrections of constraints up to round-off, without solves of bodies. */

@@ -91,7 +91,7 @@ namespace ACF
     Eigen::MatrixXd increments;
   };
 
-  /** See theory (12.8). */
+  /** See theory (12.9). */
   StageTriangularization
   triangularize_stages(const ButcherTableau &tableau);
 

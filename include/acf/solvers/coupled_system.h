@@ -6,6 +6,7 @@
 
 #include <acf/mechanics/multibody_system.h>
 #include <acf/mechanics/node_rotations.h>
+#include <acf/solvers/constraint_system.h>
 #include <acf/solvers/factorization_cache.h>
 #include <acf/solvers/repeated_pattern.h>
 
@@ -59,14 +60,21 @@ namespace ACF
    *     D s - \epsilon E \mu = g, \f]
    * where E serves repeated constraints only (see MarkerLinearization). Its
    * cost grows with the number of bodies like that of their joints' graph:
-   * linearly for chains. Without H it is the Schur complement of paper
-   * Eq. (32). Without markers nothing is done for it.
+   * linearly for chains. Without markers nothing is done for it.
+   *
+   * The forces of joints make H so small in most steps that the smaller system
+   * of the multipliers is enough, the Schur complement of paper Eq. (32):
+   * \f[ (D C D^T + \epsilon E)\, \mu_k = D u_k - g, \qquad
+   *     s_k = u_k - C D^T \mu_k, \qquad u_{k + 1} = u - C H s_k \f]
+   * (C here with its rotations). This is repeated until a further $s_k$ would
+   * change by less than 1e-10 of it. If that would not contract by a tenth each
+   * time, the system above is factorised instead.
    *
    * Matrices $K_b + U B U^T$ add the unknowns $\zeta = B U^T w$ to the small
    * system, with $Y_U = K^{-1} U$,
    * \f[ s + R C R^T \phi + R S Y_U \zeta = R S K^{-1} r, \qquad
    *     (R S Y_U)^T \phi + (B^{-1} + U^T Y_U)\, \zeta = U^T K^{-1} r. \f]
-   * See theory (12.7), theory (16.3).
+   * See theory (12.7), theory (12.8), theory (16.3).
    */
   template <typename Number>
   class CoupledSystem
@@ -143,6 +151,11 @@ namespace ACF
     void
     group_bodies();
 
+    /** Factorises the system of all unknowns.
+     * @throws SimulationError if it is singular */
+    void
+    factorize_all();
+
     /** I + C H and C D^T. @return the largest compliance */
     double
     add_compliances(Triplets &triplets) const;
@@ -161,6 +174,35 @@ namespace ACF
     evaluate_markers(const unsigned int body,
                      const Number *w,
                      Eigen::Ref<Vector> s) const;
+
+    /** $D^T \mu$ */
+    Vector
+    constraint_forces(const Vector &mu) const;
+
+    /** $D s$ */
+    Vector
+    constraint_values(const Vector &s) const;
+
+    /** $R C R^T \phi$ */
+    Vector
+    marker_displacements(const Vector &phi) const;
+
+    /** The largest value of a marker, relative to the size of its compliance.
+     */
+    double
+    largest_displacement(const Vector &s) const;
+
+    /**
+     * Solves by the Schur complement of the constraints.
+     * @param uncoupled $R S K^{-1} r$
+     * @param[out] mu, phi forces of constraints and on the markers
+     * @return whether that converged
+     */
+    bool
+    eliminate_markers(const Vector &uncoupled,
+                      const Vector &g,
+                      Vector &mu,
+                      Vector &phi);
 
     /**
      * Finishes with what the uncoupled bodies give to the first and the last
@@ -187,11 +229,26 @@ namespace ACF
     /** Work space: entries of a matrix. */
     Triplets triplets;
 
+    /** Per body, and the number of its first marker value. */
+    std::vector<MarkerCompliance<Number>> compliances;
+    std::vector<unsigned int> first_values;
+
+    /** Per marker, see MarkerCompliance; without H nothing. */
+    std::vector<double> marker_sizes;
+
     RepeatedPattern<Number> H_transposed;
-    RepeatedPattern<Number> D;
+    RepeatedPattern<double> D;
+    MarkerLinearization::Triplets redundancy;
+    bool is_first = true;
+
+    /** Unless there are changes. */
+    ConstraintSystem<Number> constraint_system;
+
+    /** All unknowns; whether it is factorised since prepare(). */
     RepeatedPattern<Number> marker_matrix;
     Eigen::SparseLU<Eigen::SparseMatrix<Number>> marker_system;
-    bool analyzed = false;
+    bool analyzed    = false;
+    bool is_complete = false;
 
     /** Per body, if there are any. */
     std::vector<Change> changes;

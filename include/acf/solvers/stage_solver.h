@@ -183,7 +183,7 @@ namespace ACF
    *     \tau^2 K \sum_{j<i} L_{ij} D_j \Delta Y_j. \f]
    * Damping enters each stage with the rate $1 / (\tau \sqrt{D_i})$ alone, and
    * K on the right is without changes of low rank.
-   * See theory (12.8).
+   * See theory (12.9).
    */
   class OneStepStageSolver : public StageSolver
   {
