@@ -12,17 +12,21 @@ namespace ACF
 {
   namespace
   {
-    // Puts the products with the newest defect in front of the others.
+    // Puts the products of the newest defect with the last ones in front of
+    // those of up to n - 1 defects.
     void
-    prepend(const Eigen::VectorXd &row, Eigen::MatrixXd &products)
+    prepend(const Eigen::VectorXd &row,
+            const unsigned int max_size,
+            Eigen::MatrixXd &products)
     {
-      const unsigned int n = row.size();
-      Eigen::MatrixXd updated(n, n);
+      const unsigned int n =
+        std::min<unsigned int>(products.rows() + 1, max_size);
+      Eigen::MatrixXd updated = Eigen::MatrixXd::Zero(n, n);
       updated.bottomRightCorner(n - 1, n - 1) =
         products.topLeftCorner(n - 1, n - 1);
-      updated.row(0) = row.transpose();
-      updated.col(0) = row;
-      products       = updated;
+      updated.row(0).head(row.size()) = row.transpose();
+      updated.col(0).head(row.size()) = row;
+      products                        = updated;
     }
   } // namespace
 
@@ -152,47 +156,47 @@ namespace ACF
     if (step_size != history.steps[0].size)
       {
         defects.clear();
+        products.assign(products.size(), Eigen::MatrixXd());
+        multiplier_products.resize(0, 0);
         return;
       }
     // in the memory of the oldest one
     Defect newest;
-    if (defects.size() == max_terms + max_targets)
+    if (defects.size() == max_terms + 1)
       {
         newest = std::move(defects.back());
         defects.pop_back();
       }
     newest.increments.resize(increments.size(), SystemVector(products.size()));
-    const StageVector &last = history.steps[0].increments;
-    for (unsigned int b = 0; b < products.size(); ++b)
-      for (unsigned int i = 0; i < increments.size(); ++i)
-        {
-          std::vector<ScaledVector> terms{{1, &increments[i][b]}};
-          for (unsigned int j = 0; j < increments.size(); ++j)
-            terms.push_back({-extrapolation(i, j), &last[j][b]});
-          linear_combination(terms, newest.increments[i][b]);
-        }
-    newest.multipliers = multipliers;
-    extrapolate(history, -1, newest.multipliers);
     defects.push_front(std::move(newest));
 
+    const StageVector &last = history.steps[0].increments;
     for (unsigned int b = 0; b < products.size(); ++b)
       {
         Eigen::VectorXd row = Eigen::VectorXd::Zero(defects.size());
         for (unsigned int i = 0; i < increments.size(); ++i)
           {
+            std::vector<ScaledVector> terms{{1, &increments[i][b]}};
+            for (unsigned int j = 0; j < increments.size(); ++j)
+              terms.push_back({-extrapolation(i, j), &last[j][b]});
+            linear_combination(terms, defects[0].increments[i][b]);
+
             std::vector<const NodalVector *> vectors;
             for (const Defect &defect : defects)
               vectors.push_back(&defect.increments[i][b]);
             const std::vector<double> sums = dot_products(*vectors[0], vectors);
             row += Eigen::Map<const Eigen::VectorXd>(sums.data(), sums.size());
           }
-        prepend(row, products[b]);
+        prepend(row, max_terms + max_targets, products[b]);
       }
+
+    defects[0].multipliers = multipliers;
+    extrapolate(history, -1, defects[0].multipliers);
     Eigen::VectorXd row = Eigen::VectorXd::Zero(defects.size());
     for (unsigned int k = 0; k < defects.size(); ++k)
       for (unsigned int i = 0; i < increments.size(); ++i)
         row(k) += defects[0].multipliers[i].dot(defects[k].multipliers[i]);
-    prepend(row, multiplier_products);
+    prepend(row, max_terms + max_targets, multiplier_products);
   }
 
 

@@ -96,9 +96,11 @@ namespace ACF
       exchange(Archive &archive);
     };
 
-    /** $d_n$, $d_{n-1}$, ..., and their scalar products for each body and for
-     * the multipliers. */
+    /** $d_n$ to $d_{n-3}$. */
     std::deque<Defect> defects;
+
+    /** $d_{n-j} \cdot d_{n-k}$ for each body and for the multipliers, up to
+     * $d_{n-5}$; 0 for $|j - k| > 3$, which nothing needs. */
     std::vector<Eigen::MatrixXd> products;
     Eigen::MatrixXd multiplier_products;
   };
