@@ -151,7 +151,7 @@ namespace ACF
     redundancy = linearization.redundancy;
 
     is_complete = false;
-    if (!changes.empty())
+    if (!changes.empty() || !stiffness_is_small())
       factorize_all();
     else if (m > 0)
       {
@@ -470,6 +470,22 @@ namespace ACF
 
   template <typename Number>
   bool
+  CoupledSystem<Number>::stiffness_is_small() const
+  {
+    const auto &H = H_transposed.matrix();
+    for (unsigned int k = 0; k < H.outerSize(); ++k)
+      for (typename std::decay_t<decltype(H)>::InnerIterator entry(H, k); entry;
+           ++entry)
+        if (entry.row() / dim == k / dim &&
+            marker_sizes[k / dim] * std::abs(entry.value()) > least_contraction)
+          return false;
+    return true;
+  }
+
+
+
+  template <typename Number>
+  bool
   CoupledSystem<Number>::eliminate_markers(const Vector &uncoupled,
                                            const Vector &g,
                                            Vector &mu,
@@ -488,23 +504,24 @@ namespace ACF
     double contracted = size;
     while (true)
       {
-        Vector force            = H_transposed.matrix().transpose() * change;
-        const Vector unbalanced = marker_displacements(force);
-        const double next       = largest_displacement(unbalanced);
-        if (!(next > 1e-10 * size))
+        Vector force = H_transposed.matrix().transpose() * change;
+        change       = -marker_displacements(force);
+        if (!(largest_displacement(change) > 1e-10 * size))
           return true;
-        if (next > 0.1 * contracted)
-          return false;
-        contracted = next;
         if (constrained)
           {
             const Vector mu_change =
-              constraint_system.solve(-constraint_values(unbalanced));
+              constraint_system.solve(constraint_values(change));
             mu += mu_change;
-            force += constraint_forces(mu_change);
+            const Vector reactions = constraint_forces(mu_change);
+            force += reactions;
+            change -= marker_displacements(reactions);
           }
+        const double next = largest_displacement(change);
+        if (next > least_contraction * contracted)
+          return false;
+        contracted = next;
         phi += force;
-        change = -marker_displacements(force);
       }
   }
 

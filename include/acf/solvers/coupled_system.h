@@ -121,6 +121,9 @@ namespace ACF
     solve_constraints(const Vector &g);
 
   private:
+    /** Of an iteration that is worth while. */
+    static constexpr double least_contraction = 0.1;
+
     using Matrix   = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
     using Triplets = typename RepeatedPattern<Number>::Triplets;
 
@@ -191,6 +194,11 @@ namespace ACF
      */
     double
     largest_displacement(const Vector &s) const;
+
+    /** Whether the Schur complement may do: what each marker's own compliance
+     * times its own stiffness says of C H. */
+    bool
+    stiffness_is_small() const;
 
     /**
      * Solves by the Schur complement of the constraints.
