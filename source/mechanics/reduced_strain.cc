@@ -164,22 +164,15 @@ namespace ACF
 
 
 
-  namespace
+  Vector3
+  frame_spin(const BodyRotation &frame, const Matrix3 &velocity_gradient)
   {
-    // In the frame of the body.
-    Vector3
-    spin_in(const BodyOperators &body,
-            const BodyRotation &frame,
-            const NodalVector &velocities)
-    {
-      const Matrix3 H =
-        transpose(frame.rotation) * mean_deformation_gradient(body, velocities);
-      Vector3 spin;
-      for (unsigned int i = 0; i < dim; ++i)
-        spin[i] = scalar_product(frame.spin_gradient[i], H);
-      return spin;
-    }
-  } // namespace
+    const Matrix3 H = transpose(frame.rotation) * velocity_gradient;
+    Vector3 spin;
+    for (unsigned int i = 0; i < dim; ++i)
+      spin[i] = scalar_product(frame.spin_gradient[i], H);
+    return spin;
+  }
 
 
 
@@ -193,7 +186,8 @@ namespace ACF
       body_rotation(mean_deformation_gradient(body, positions), measure);
     if (!frame)
       return {};
-    return frame->rotation * spin_in(body, *frame, velocities);
+    return frame->rotation *
+           frame_spin(*frame, mean_deformation_gradient(body, velocities));
   }
 
 
@@ -207,9 +201,10 @@ namespace ACF
   {
     AssertDimension(rate.size(), body.n_unknowns());
     const Matrix3 inverse         = transpose(frame.rotation);
-    const Vector3 spin            = spin_in(body, frame, velocities);
+    const NodalMoments moments    = nodal_moments(body, velocities);
+    const Vector3 spin            = frame_spin(frame, moments.gradient);
     const Vector3 centre          = mass_mean(body, positions);
-    const Vector3 centre_velocity = mass_mean(body, velocities);
+    const Vector3 centre_velocity = moments.mean;
     for (unsigned int a = 0; a < body.n_nodes; ++a)
       {
         const Vector3 y = inverse * (node_value(positions, a) - centre);

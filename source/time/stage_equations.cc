@@ -121,10 +121,24 @@ namespace ACF
   NodalMoments
   StageEquations::moments(const unsigned int stage, const unsigned int b) const
   {
-    return add(
-      add(position_moments[b], tableau.c(stage) * tau, velocity_moments[b]),
-      1,
-      nodal_moments(system.bodies()[b].operators(), increments[stage][b]));
+    return moments(stage,
+                   b,
+                   nodal_moments(system.bodies()[b].operators(),
+                                 increments[stage][b]));
+  }
+
+
+
+  NodalMoments
+  StageEquations::moments(const unsigned int stage,
+                          const unsigned int b,
+                          const NodalMoments &of_increment) const
+  {
+    return add(add(position_moments[b],
+                   tableau.c(stage) * tau,
+                   velocity_moments[b]),
+               1,
+               of_increment);
   }
 
 
@@ -178,9 +192,9 @@ namespace ACF
   StageEquations::body_residual(const unsigned int b, StageVector &residual)
   {
     const Body &body = system.bodies()[b];
-    if (!body.is_damped() && body.strain_measure() == StrainMeasure::reduced)
+    if (body.strain_measure() == StrainMeasure::reduced)
       return reduced_residual(b, residual);
-    return general_residual(b, residual);
+    return green_lagrange_residual(b, residual);
   }
 
 
@@ -191,17 +205,34 @@ namespace ACF
     const Body &body            = system.bodies()[b];
     const unsigned int n_stages = tableau.n_stages();
     NodalMotion motion;
-    motion.position = &state->positions[b];
-    motion.velocity = &state->velocities[b];
-    motion.rates    = A_inverse_squared / (tau * tau);
+    motion.position     = &state->positions[b];
+    motion.velocity     = &state->velocities[b];
+    motion.second_rates = A_inverse_squared / (tau * tau);
+    std::vector<NodalMoments> increment_moments;
     std::vector<NodalVector *> forces;
     for (unsigned int i = 0; i < n_stages; ++i)
       {
         motion.times.push_back(tableau.c(i) * tau);
         motion.increments.push_back(&increments[i][b]);
-        motion.moments.push_back(moments(i, b));
+        increment_moments.push_back(
+          nodal_moments(body.operators(), increments[i][b]));
+        motion.moments.push_back(moments(i, b, increment_moments[i]));
         motion.gravity.push_back(system.gravity(time(i)));
         forces.push_back(&residual[i][b]);
+      }
+    motion.mass_damping      = body.mass_damping();
+    motion.stiffness_damping = body.stiffness_damping();
+    if (motion.is_damped())
+      {
+        motion.first_rates = A_inverse / tau;
+        for (unsigned int i = 0; i < n_stages; ++i)
+          {
+            NodalMoments velocity = velocity_moments[b];
+            for (unsigned int j = 0; j < n_stages; ++j)
+              velocity =
+                add(velocity, motion.first_rates(i, j), increment_moments[j]);
+            motion.velocity_moments.push_back(velocity);
+          }
       }
     if (!reduced_strain_residual(body.operators(),
                                  body.rotation_measure(),
@@ -221,7 +252,8 @@ namespace ACF
 
 
   bool
-  StageEquations::general_residual(const unsigned int b, StageVector &residual)
+  StageEquations::green_lagrange_residual(const unsigned int b,
+                                          StageVector &residual)
   {
     const Body &body            = system.bodies()[b];
     const unsigned int n_stages = tableau.n_stages();

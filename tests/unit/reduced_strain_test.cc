@@ -143,55 +143,91 @@ TEST(ReducedStrain, NodalMomentsAreLinear)
 TEST(ReducedStrain, ResidualsAtSeveralTimes)
 {
   Random random;
-  double error = 0;
+  double error = 0, damping = 0;
   for (const Example &example : examples())
     for (const auto &measure : measures)
       for (unsigned int n = 1; n <= 3; ++n)
-        {
-          const BodyOperators &body = example.body;
-          const NodalVector x       = deformed(example, random),
-                            v       = random.nodal_vector(x.size(), 1);
-          const double scale        = example.force_scale();
-          // with inertial forces as large as the elastic ones
-          NodalMotion motion{&x, &v, {}, {}, {}, {}, {}};
-          motion.rates = Eigen::MatrixXd::Random(n, n) * scale / body.mass;
-          std::vector<NodalVector> z, residuals(n, NodalVector(x.size()));
-          std::vector<NodalVector *> targets;
-          for (unsigned int i = 0; i < n; ++i)
-            z.push_back(random.nodal_vector(x.size(), 1e-2));
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              motion.times.push_back(1e-2 * (i + 1));
-              motion.increments.push_back(&z[i]);
-              motion.gravity.push_back(random.vector(0.01 * scale / body.mass));
-              NodalVector position(x);
-              position.add(motion.times[i], v, 1, z[i]);
-              motion.moments.push_back(nodal_moments(body, position));
-              residuals[i] = 1e10; // to be overwritten
-              targets.push_back(&residuals[i]);
-            }
-          ReducedStrainWork work;
-          // again with the same work space
-          for (unsigned int repetition = 0; repetition < 2; ++repetition)
-            ASSERT_TRUE(reduced_strain_residual(
-              body, measure.first, motion, targets, work));
+        for (const auto &[alpha, beta] :
+             {std::pair(0., 0.), {0.01, 0.}, {0., 0.01}, {0.01, 0.01}})
+          {
+            const BodyOperators &body = example.body;
+            const NodalVector x       = deformed(example, random),
+                              v       = random.nodal_vector(x.size(), 1);
+            const double scale        = example.force_scale();
+            // with forces of inertia and damping as large as the elastic ones
+            NodalMotion motion;
+            motion.position          = &x;
+            motion.velocity          = &v;
+            motion.mass_damping      = alpha * scale / body.mass;
+            motion.stiffness_damping = beta;
+            motion.first_rates       = 10 * Eigen::MatrixXd::Random(n, n);
+            motion.second_rates =
+              Eigen::MatrixXd::Random(n, n) * scale / body.mass;
+            std::vector<NodalVector> z, residuals(n, NodalVector(x.size()));
+            std::vector<NodalVector *> targets;
+            for (unsigned int i = 0; i < n; ++i)
+              z.push_back(random.nodal_vector(x.size(), 1e-2));
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                motion.times.push_back(1e-2 * (i + 1));
+                motion.increments.push_back(&z[i]);
+                motion.gravity.push_back(
+                  random.vector(0.01 * scale / body.mass));
+                NodalVector position(x), velocity(v);
+                position.add(motion.times[i], v, 1, z[i]);
+                motion.moments.push_back(nodal_moments(body, position));
+                for (unsigned int j = 0; j < n; ++j)
+                  velocity.add(motion.first_rates(i, j), z[j]);
+                motion.velocity_moments.push_back(
+                  nodal_moments(body, velocity));
+                residuals[i] = 1e10; // to be overwritten
+                targets.push_back(&residuals[i]);
+              }
+            ReducedStrainWork work;
+            // again with the same work space
+            for (unsigned int repetition = 0; repetition < 2; ++repetition)
+              ASSERT_TRUE(reduced_strain_residual(
+                body, measure.first, motion, targets, work));
 
-          for (unsigned int i = 0; i < n; ++i)
-            {
-              NodalVector position(x), acceleration(x.size()),
-                expected(x.size());
-              position.add(motion.times[i], v, 1, z[i]);
-              for (unsigned int j = 0; j < n; ++j)
-                acceleration.add(-motion.rates(i, j), z[j]);
-              for (unsigned int k = 0; k < x.size(); ++k)
-                acceleration[k] += motion.gravity[i][k % dim];
-              body.mass_matrix.vmult(expected, acceleration);
-              expected -= force_of(example, measure.first, position).value;
-              expected -= residuals[i];
-              error = std::max(error, expected.linfty_norm() / scale);
-            }
-        }
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                NodalVector position(x), velocity(v), acceleration(x.size()),
+                  expected(x.size()), force(x.size()), scratch(x.size());
+                position.add(motion.times[i], v, 1, z[i]);
+                for (unsigned int j = 0; j < n; ++j)
+                  {
+                    velocity.add(motion.first_rates(i, j), z[j]);
+                    acceleration.add(-motion.second_rates(i, j), z[j]);
+                  }
+                for (unsigned int k = 0; k < x.size(); ++k)
+                  acceleration[k] += motion.gravity[i][k % dim];
+                body.mass_matrix.vmult(expected, acceleration);
+                const NodalVector elastic =
+                  force_of(example, measure.first, position).value;
+                if (motion.is_damped())
+                  {
+                    ASSERT_TRUE(
+                      damped_reduced_strain_force(body,
+                                                  measure.first,
+                                                  position,
+                                                  velocity,
+                                                  motion.mass_damping,
+                                                  motion.stiffness_damping,
+                                                  force,
+                                                  scratch));
+                    expected -= force;
+                    force -= elastic;
+                    damping = std::max(damping, force.linfty_norm() / scale);
+                  }
+                else
+                  expected -= elastic;
+                expected -= residuals[i];
+                error = std::max(error, expected.linfty_norm() / scale);
+              }
+          }
   EXPECT_LT(error, 1e-13);
+  EXPECT_GT(damping, 0.01); // it is noticeable
+  report("largest damping of the motions over the largest force", damping);
   report("residuals of motions", error);
 }
 
@@ -423,14 +459,15 @@ TEST(ReducedStrain, NothingForInvertedBodies)
         NodalVector back(X);
         back *= -1;
         NodalVector forces[2] = {zero, zero};
-        const NodalMotion motion{&X,
-                                 &zero,
-                                 {0, 0},
-                                 {&zero, &back},
-                                 Eigen::MatrixXd::Identity(2, 2),
-                                 {nodal_moments(example.body, X),
-                                  nodal_moments(example.body, zero)},
-                                 {Vector3(), Vector3()}};
+        NodalMotion motion;
+        motion.position     = &X;
+        motion.velocity     = &zero;
+        motion.times        = {0, 0};
+        motion.increments   = {&zero, &back};
+        motion.second_rates = Eigen::MatrixXd::Identity(2, 2);
+        motion.moments      = {nodal_moments(example.body, X),
+                               nodal_moments(example.body, zero)};
+        motion.gravity      = {Vector3(), Vector3()};
         ReducedStrainWork work;
         EXPECT_FALSE(reduced_strain_residual(
           example.body, measure.first, motion, {&forces[0], &forces[1]}, work));

@@ -51,6 +51,15 @@ namespace ACF
   add(const NodalMoments &x, const double factor, const NodalMoments &y);
 
   /**
+   * Spin $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes
+   * g_a$, of a frame in itself, rad/s.
+   * @param velocity_gradient $\sum_a v_a \otimes g_a$, 1/s
+   * See theory (7.1).
+   */
+  Vector3
+  frame_spin(const BodyRotation &frame, const Matrix3 &velocity_gradient);
+
+  /**
    * Angular velocity $R \dot\varphi$ of the frame of a body in the world,
    * rad/s,
    * $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes g_a$.

@@ -12,8 +12,8 @@
 namespace ACF
 {
   /**
-   * A body at some times: positions $x_i = x + t_i v + z_i$ and accelerations
-   * $a_i = \sum_j d_{ij} z_j$.
+   * A body at some times: positions $x_i = x + t_i v + z_i$, velocities
+   * $v_i = v + \sum_j e_{ij} z_j$ and accelerations $a_i = \sum_j d_{ij} z_j$.
    */
   struct NodalMotion
   {
@@ -30,13 +30,27 @@ namespace ACF
     std::vector<const NodalVector *> increments;
 
     /** d, 1/s^2. */
-    Eigen::MatrixXd rates;
+    Eigen::MatrixXd second_rates;
 
     /** Those of the $x_i$. */
     std::vector<NodalMoments> moments;
 
     /** Acceleration $g_i$ that acts on all masses, m/s^2. */
     std::vector<Vector3> gravity;
+
+    /** Rayleigh damping $\alpha$, 1/s, and $\beta$, s. */
+    double mass_damping      = 0;
+    double stiffness_damping = 0;
+
+    /** e, 1/s, and the moments of the $v_i$; only read with damping. */
+    Eigen::MatrixXd first_rates;
+    std::vector<NodalMoments> velocity_moments;
+
+    bool
+    is_damped() const
+    {
+      return mass_damping != 0 || stiffness_damping != 0;
+    }
   };
 
   /** Work space of reduced_strain_residual(), for the next call. */
@@ -44,14 +58,19 @@ namespace ACF
   {
     NodeLanes displacements, accelerations;
     NodeLanes stiffness_products, mass_products;
+
+    /** With damping: $q + \beta \dot q$; $\dot q$ and $M \dot q$. */
+    NodeLanes strained, rates, momenta;
   };
 
   /**
-   * What is missing for the equilibrium of a body without damping:
-   * $r_i = M (g_i - a_i) - f(x_i)$ with the force f of reduced_strain_force().
-   * Reads the matrices once for all times, and vectors as seldom as their
-   * dependencies let it.
-   * See theory (3.2), theory (11.1).
+   * What is missing for the equilibrium of a body:
+   * $r_i = M (g_i - a_i) - f(x_i, v_i)$ with the force f of
+   * reduced_strain_force(), or of damped_reduced_strain_force(). Reads the
+   * matrices once for all times, the mass matrix twice with $\alpha$, and
+   * vectors as seldom as their dependencies let it. Does nothing for damping
+   * that there is not.
+   * See theory (3.2), theory (7.2), theory (11.1).
    *
    * @param[out] residual $r_i$, N
    * @return false if a mean deformation gradient has no rotation

@@ -135,6 +135,12 @@ namespace ACF
     NodalMoments
     moments(const unsigned int stage, const unsigned int body) const;
 
+    /** The same with those of the increment of this stage. */
+    NodalMoments
+    moments(const unsigned int stage,
+            const unsigned int body,
+            const NodalMoments &of_increment) const;
+
     /**
      * What a body and its loads alone give to the residual.
      * @return false if the body is turned inside out
@@ -142,13 +148,13 @@ namespace ACF
     bool
     body_residual(const unsigned int body, StageVector &residual);
 
-    /** That of a body without damping that has the reduced strain. */
+    /** That of a body with the reduced strain. */
     bool
     reduced_residual(const unsigned int body, StageVector &residual);
 
-    /** That of any other. */
+    /** That of a body with the strain of Green and Lagrange. */
     bool
-    general_residual(const unsigned int body, StageVector &residual);
+    green_lagrange_residual(const unsigned int body, StageVector &residual);
 
     void
     add_material_rotations(const unsigned int body,
