@@ -9,71 +9,6 @@
 namespace ACF
 {
   template <typename Number>
-  typename MarkerCompliance<Number>::Vector
-  MarkerCompliance<Number>::functional_forces(
-    const Eigen::Ref<const Vector> &phi) const
-  {
-    Vector F = Vector::Zero(functionals->rows());
-    for (unsigned int p = 0; p < markers->size(); ++p)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          F(dim * (*markers)[p] + i) +=
-            inverse_scale * rotations[p](j, i) * phi(dim * p + j);
-    return F;
-  }
-
-
-
-  template <typename Number>
-  typename MarkerCompliance<Number>::Vector
-  MarkerCompliance<Number>::displacements(
-    const Eigen::Ref<const Vector> &phi) const
-  {
-    const Vector local = *functionals * functional_forces(phi);
-    Vector result      = Vector::Zero(n_values());
-    for (unsigned int p = 0; p < markers->size(); ++p)
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          result(dim * p + i) +=
-            rotations[p](i, j) * local(dim * (*markers)[p] + j);
-    return result;
-  }
-
-
-
-  template <typename Number>
-  double
-  MarkerCompliance<Number>::largest() const
-  {
-    double result = 0;
-    for (const unsigned int q : *markers)
-      for (const unsigned int p : *markers)
-        result =
-          std::max(result,
-                   functionals->template block<dim, dim>(dim * p, dim * q)
-                     .cwiseAbs()
-                     .maxCoeff());
-    return std::abs(inverse_scale) * result;
-  }
-
-
-
-  template <typename Number>
-  void
-  MarkerCompliance<Number>::append_sizes(std::vector<double> &sizes) const
-  {
-    for (const unsigned int functional : *markers)
-      {
-        Number trace = 0;
-        for (unsigned int i = 0; i < dim; ++i)
-          trace += (*functionals)(dim * functional + i, dim * functional + i);
-        sizes.push_back(std::abs(inverse_scale * trace));
-      }
-  }
-
-
-
-  template <typename Number>
   void
   ConstraintSystem<Number>::find_rows(
     const std::vector<MarkerCompliance<Number>> &compliances,
@@ -201,8 +136,6 @@ namespace ACF
 
 
 
-  template struct MarkerCompliance<double>;
-  template struct MarkerCompliance<std::complex<double>>;
   template class ConstraintSystem<double>;
   template class ConstraintSystem<std::complex<double>>;
 } // namespace ACF

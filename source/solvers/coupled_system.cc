@@ -170,119 +170,17 @@ namespace ACF
   void
   CoupledSystem<Number>::factorize_all()
   {
-    // (I + C H) s + C D^T mu = ..., D s - eps E mu = ...
-    const unsigned int n = system.n_marker_values();
-    const unsigned int m = system.n_constraints();
-    triplets.clear();
-    for (unsigned int k = 0; k < n; ++k)
-      for (typename Eigen::SparseMatrix<double>::InnerIterator entry(D.matrix(),
-                                                                     k);
-           entry;
-           ++entry)
-        triplets.emplace_back(n + entry.row(), k, Number(entry.value()));
-    const double compliance = add_compliances(triplets);
-    for (const auto &entry : redundancy)
-      triplets.emplace_back(n + entry.row(),
-                            n + entry.col(),
-                            -compliance * entry.value());
-    add_changes(triplets);
-
-    const unsigned int n_unknowns = n + m + n_change_unknowns;
-    // the pattern is that of the mechanism but for these two
-    const bool pattern_varies = !changes.empty() || !redundancy.empty();
-    const bool is_new         = !analyzed || pattern_varies;
-    marker_matrix.assemble(n_unknowns, n_unknowns, triplets, is_new);
-    if (is_new)
-      marker_system.analyzePattern(marker_matrix.matrix());
-    analyzed = !pattern_varies;
-    marker_system.factorize(marker_matrix.matrix());
     ++statistics.marker_factorizations;
-    if (marker_system.info() != Eigen::Success)
+    if (!marker_system.factorize(compliances,
+                                 first_values,
+                                 H_transposed.matrix(),
+                                 D.matrix(),
+                                 redundancy,
+                                 changes))
       throw SimulationError(
         "the equations of the joints and force elements are singular" +
         dependent_joints(system, D.matrix()));
     is_complete = true;
-  }
-
-
-
-  namespace
-  {
-    // scale R_p C_pq R_q^T for a block C_pq of compliances
-    template <typename Number, typename Compliance>
-    Eigen::Matrix<Number, dim, dim>
-    rotated_compliance(const Compliance &compliance,
-                       const unsigned int row,
-                       const unsigned int column,
-                       const Eigen::Matrix3d &R_p,
-                       const Eigen::Matrix3d &R_q,
-                       const Number scale)
-    {
-      Eigen::Matrix<Number, dim, dim> half, result;
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          half(i, j) = scale * (R_p(i, 0) * compliance(row, column + j) +
-                                R_p(i, 1) * compliance(row + 1, column + j) +
-                                R_p(i, 2) * compliance(row + 2, column + j));
-      for (unsigned int i = 0; i < dim; ++i)
-        for (unsigned int j = 0; j < dim; ++j)
-          result(i, j) = half(i, 0) * R_q(j, 0) + half(i, 1) * R_q(j, 1) +
-                         half(i, 2) * R_q(j, 2);
-      return result;
-    }
-  } // namespace
-
-
-
-  template <typename Number>
-  double
-  CoupledSystem<Number>::add_compliances(Triplets &triplets) const
-  {
-    const unsigned int n = system.n_marker_values();
-    for (unsigned int i = 0; i < n; ++i)
-      triplets.emplace_back(i, i, Number(1));
-    double squared_compliance = 0;
-    for (unsigned int b = 0; b < factors.size(); ++b)
-      {
-        const auto &markers        = system.body_markers(b);
-        const Eigen::Matrix3d *R   = rotations.data() + system.first_marker(b);
-        const unsigned int first   = dim * system.first_marker(b);
-        const Number inverse_scale = Number(1) / scales[b];
-        for (unsigned int q = 0; q < markers.size(); ++q)
-          for (unsigned int p = 0; p < markers.size(); ++p)
-            {
-              const Eigen::Matrix<Number, dim, dim> C =
-                rotated_compliance<Number>(factors[b]->compliance(),
-                                           dim * markers[p],
-                                           dim * markers[q],
-                                           R[p],
-                                           R[q],
-                                           inverse_scale);
-              for (unsigned int i = 0; i < dim; ++i)
-                for (unsigned int j = 0; j < dim; ++j)
-                  squared_compliance =
-                    std::max(squared_compliance, std::norm(C(i, j)));
-              for (unsigned int j = 0; j < dim; ++j)
-                {
-                  const unsigned int k = first + dim * q + j;
-                  const auto add_row   = [&](const auto &columns,
-                                           const unsigned int shift) {
-                    using Columns = std::decay_t<decltype(columns)>;
-                    for (typename Columns::InnerIterator entry(columns, k);
-                         entry;
-                         ++entry)
-                      for (unsigned int i = 0; i < dim; ++i)
-                        triplets.emplace_back(first + dim * p + i,
-                                              shift + entry.row(),
-                                              C(i, j) * entry.value());
-                  };
-                  // columns of H^T and D are rows of H and D^T
-                  add_row(H_transposed.matrix(), 0);
-                  add_row(D.matrix(), n);
-                }
-            }
-      }
-    return std::sqrt(squared_compliance);
   }
 
 
@@ -305,9 +203,9 @@ namespace ACF
     changes.resize(terms.size());
     for (unsigned int b = 0; b < terms.size(); ++b)
       {
-        Change &change          = changes[b];
-        const unsigned int rank = terms[b].columns.cols();
-        change.first            = first + n_change_unknowns;
+        MatrixChange<Number> &change = changes[b];
+        const unsigned int rank      = terms[b].columns.cols();
+        change.first                 = first + n_change_unknowns;
         n_change_unknowns += rank;
         change.marker_values.resize(dim * system.body_markers(b).size(), rank);
         if (rank == 0)
@@ -331,45 +229,6 @@ namespace ACF
             Vector s(change.marker_values.rows());
             evaluate_markers(b, change.solutions.col(j).data(), s);
             change.marker_values.col(j) = s;
-          }
-      }
-  }
-
-
-
-  template <typename Number>
-  void
-  CoupledSystem<Number>::add_changes(Triplets &triplets) const
-  {
-    using Iterator = typename Eigen::SparseMatrix<Number>::InnerIterator;
-
-    const unsigned int n = system.n_marker_values();
-    for (unsigned int b = 0; b < changes.size(); ++b)
-      {
-        const Change &change     = changes[b];
-        const unsigned int first = dim * system.first_marker(b);
-        for (unsigned int j = 0; j < change.columns.cols(); ++j)
-          {
-            const unsigned int row = change.first + j;
-            for (unsigned int i = 0; i < change.columns.cols(); ++i)
-              triplets.emplace_back(row, change.first + i, change.matrix(j, i));
-            for (unsigned int k = 0; k < change.marker_values.rows(); ++k)
-              {
-                const Number value = change.marker_values(k, j);
-                triplets.emplace_back(first + k, row, change.size * value);
-                for (Iterator entry(H_transposed.matrix(), first + k); entry;
-                     ++entry)
-                  triplets.emplace_back(row,
-                                        entry.row(),
-                                        value * entry.value());
-                for (Eigen::SparseMatrix<double>::InnerIterator entry(
-                       D.matrix(), first + k);
-                     entry;
-                     ++entry)
-                  triplets.emplace_back(row,
-                                        n + entry.row(),
-                                        value * entry.value());
-              }
           }
       }
   }

@@ -5,60 +5,13 @@
 #define acf_solvers_constraint_system_h
 
 #include <acf/mechanics/multibody_system.h>
+#include <acf/solvers/marker_compliance.h>
 #include <acf/solvers/repeated_pattern.h>
 
-#include <Eigen/Dense>
 #include <Eigen/SparseLU>
 
 namespace ACF
 {
-  /**
-   * Compliance of a body at its markers, $R_b C_b R_b^T / \text{scale}$ in
-   * world directions.
-   */
-  template <typename Number>
-  struct MarkerCompliance
-  {
-    using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
-    using Vector = Eigen::Matrix<Number, Eigen::Dynamic, 1>;
-
-    /** $C_b$ of the functionals of the reference body, in its frame. */
-    const Matrix *functionals;
-
-    /** Of each marker of the body, and their functionals. */
-    const Eigen::Matrix3d *rotations;
-    const std::vector<unsigned int> *markers;
-
-    Number inverse_scale;
-
-    /** Size of the marker values of the body. */
-    unsigned int
-    n_values() const
-    {
-      return dim * markers->size();
-    }
-
-    /** Forces on the functionals, in the frame of the body.
-     * @param phi on the markers, world directions */
-    Vector
-    functional_forces(const Eigen::Ref<const Vector> &phi) const;
-
-    /** Displacements of the markers due to forces on them. */
-    Vector
-    displacements(const Eigen::Ref<const Vector> &phi) const;
-
-    /** The largest entry's absolute value. */
-    double
-    largest() const;
-
-    /** Appends the absolute trace of each marker's own block: what its squared
-     * values are compared with. */
-    void
-    append_sizes(std::vector<double> &sizes) const;
-  };
-
-
-
   /**
    * The Schur complement of constraints,
    * \f[ (D C D^T + \epsilon E)\, \mu = h \f]

@@ -8,9 +8,7 @@
 #include <acf/mechanics/node_rotations.h>
 #include <acf/solvers/constraint_system.h>
 #include <acf/solvers/factorization_cache.h>
-#include <acf/solvers/repeated_pattern.h>
-
-#include <Eigen/SparseLU>
+#include <acf/solvers/marker_system.h>
 
 namespace ACF
 {
@@ -124,32 +122,7 @@ namespace ACF
     /** Of an iteration that is worth while. */
     static constexpr double least_contraction = 0.1;
 
-    using Matrix   = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
     using Triplets = typename RepeatedPattern<Number>::Triplets;
-
-    /**
-     * A LowRankChange with columns U of length one. Its unknowns are
-     * $\zeta / \kappa$ with the size $\kappa$ of B, so that their rows are in m
-     * as those of the markers.
-     */
-    struct Change
-    {
-      /** Number of the first unknown of the small system. */
-      unsigned int first;
-
-      Matrix columns;
-
-      /** $Y_U$ */
-      Matrix solutions;
-
-      /** $\kappa (B^{-1} + U^T Y_U)$ */
-      Matrix matrix;
-
-      /** $R S Y_U$ */
-      Matrix marker_values;
-
-      double size;
-    };
 
     void
     group_bodies();
@@ -159,15 +132,8 @@ namespace ACF
     void
     factorize_all();
 
-    /** I + C H and C D^T. @return the largest compliance */
-    double
-    add_compliances(Triplets &triplets) const;
-
     void
     prepare_changes(const std::vector<LowRankChange> &terms);
-
-    void
-    add_changes(Triplets &triplets) const;
 
     void
     solve_bodies();
@@ -253,13 +219,11 @@ namespace ACF
     ConstraintSystem<Number> constraint_system;
 
     /** All unknowns; whether it is factorised since prepare(). */
-    RepeatedPattern<Number> marker_matrix;
-    Eigen::SparseLU<Eigen::SparseMatrix<Number>> marker_system;
-    bool analyzed    = false;
+    MarkerSystem<Number> marker_system;
     bool is_complete = false;
 
     /** Per body, if there are any. */
-    std::vector<Change> changes;
+    std::vector<MatrixChange<Number>> changes;
     unsigned int n_change_unknowns = 0;
   };
 } // namespace ACF
