@@ -29,7 +29,7 @@ namespace ACF
     constexpr double n_iterations     = 1.5;
     constexpr double solve_work       = 1;     // per byte that a solve reads
     constexpr double unknown_work     = 2.5e3; // per unknown and iteration
-    constexpr double constraint_work  = 6e5;   // per constraint and iteration
+    constexpr double constraint_work  = 4e5;   // per constraint and iteration
     constexpr double integration_work = 250;   // per node of a cell,
                                                // integration point and stage
     constexpr double entry_work = 3.8e3;       // per entry that is factorised
