@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 namespace ACF
 {
@@ -47,10 +48,25 @@ namespace ACF
 
 
 
+  bool
+  ErrorController::is_too_hard(const StepWork &work)
+  {
+    const double cost = work.n_solves / step_size();
+    costs[level]      = cost;
+    const auto below = costs.find(level - 1), above = costs.find(level + 1);
+    return work.is_hard && !(below != costs.end() && below->second >= cost) &&
+           !(above != costs.end() && above->second <= cost);
+  }
+
+
+
   void
   ErrorController::accept(const double error,
-                          const std::function<bool(double)> &has_factors)
+                          const std::function<bool(double)> &has_factors,
+                          const StepWork &work)
   {
+    const bool too_hard = is_too_hard(work);
+
     // summation by Kahan
     const double summand = step_size() - rest;
     const double sum     = end + summand;
@@ -68,16 +84,29 @@ namespace ACF
       return factor >= std::pow(2., 0.5 * points) &&
              lattice_size(level + points) <= largest_step * (1 + 1e-12);
     };
-    allowed_one       = allows_level(1) ? allowed_one + 1 : 0;
-    allowed_two       = allows_level(2) ? allowed_two + 1 : 0;
+    allowed_one = allows_level(1) ? allowed_one + 1 : 0;
+    allowed_two = allows_level(2) ? allowed_two + 1 : 0;
+    if (blocked > 0)
+      --blocked;
+    if (!work.is_hard && level >= hard_level)
+      hard_wait = 1;
     const auto is_due = [&](const int points, const unsigned int n_allowed) {
+      if (blocked > 0 && level + points >= hard_level)
+        return false;
       const unsigned int needed =
         has_factors(lattice_size(level + points)) ? 2 : (points == 2 ? 3 : 8);
       return n_allowed >= needed * patience;
     };
 
     int points = 0;
-    if (is_due(2, allowed_two))
+    if (too_hard)
+      {
+        hard_level = level;
+        blocked    = 8 * hard_wait;
+        hard_wait  = std::min(64U, 2 * hard_wait);
+        decrease(1);
+      }
+    else if (is_due(2, allowed_two))
       points = 2;
     else if (is_due(1, allowed_one))
       points = 1;
@@ -139,6 +168,9 @@ namespace ACF
     patience                  = 1;
     since_rise                = 1000;
     rejections                = 0;
+    costs.clear();
+    blocked   = 0;
+    hard_wait = 1;
   }
 
 
@@ -157,6 +189,21 @@ namespace ACF
     archive("patience", patience);
     archive("steps since the last rise", since_rise);
     archive("rejections", rejections);
+    archive("hard level", hard_level);
+    archive("steps without a hard one", blocked);
+    archive("wait for a hard one", hard_wait);
+    std::vector<int> levels;
+    std::vector<double> level_costs;
+    for (const auto &[key, cost] : costs)
+      {
+        levels.push_back(key);
+        level_costs.push_back(cost);
+      }
+    archive("levels", levels);
+    archive("costs of levels", level_costs);
+    costs.clear();
+    for (unsigned int k = 0; k < levels.size(); ++k)
+      costs[levels[k]] = level_costs[k];
     if (kept_first_step != first_step)
       start_at(end);
   }

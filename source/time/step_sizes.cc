@@ -65,11 +65,12 @@ namespace ACF
 
   void
   StepSizes::accept(const double error,
-                    const std::function<bool(double)> &has_factors)
+                    const std::function<bool(double)> &has_factors,
+                    const StepWork &work)
   {
     n_failures = 0;
     if (is_controlled)
-      controlled.accept(error, has_factors);
+      controlled.accept(error, has_factors, work);
     else
       fixed.accept();
   }

@@ -104,6 +104,40 @@ TEST(ErrorController, StepsThatFailAreHalved)
 
 
 
+TEST(ErrorController, HardStepsAreShortenedWhereThatTakesLessWork)
+{
+  // Errors allow any step. Steps from 4 ms on are hard: they take some solves
+  // in place of one, more the longer they are.
+  const auto solves_per_second =
+    [](const double hard_solves, const double growth, double &largest_size) {
+      ErrorController controller(1e-3, 1., 1., 4);
+      double n_solves = 0;
+      largest_size    = 0;
+      for (unsigned int k = 0; k < 400; ++k)
+        {
+          const double size = controller.step_size();
+          StepWork work{1, size > 3.9e-3};
+          if (work.is_hard)
+            work.n_solves = hard_solves * std::pow(size / 4e-3, growth);
+          n_solves += work.n_solves;
+          largest_size = std::max(largest_size, size);
+          controller.accept(0, all_factors, work);
+        }
+      return n_solves / controller.time();
+    };
+
+  // 2.8 ms are best, with 350 solves per second; 4 ms would take 2500 and 5.7
+  // ms 3500. They are tried now and then.
+  double largest_size;
+  EXPECT_LT(solves_per_second(10, 2, largest_size), 700);
+  EXPECT_LT(largest_size, 5.7e-3);
+  // the longer the better
+  EXPECT_LT(solves_per_second(1.2, 0, largest_size), 10);
+  EXPECT_GT(largest_size, 0.5);
+}
+
+
+
 TEST(ErrorController, TimesDoNotDrift)
 {
   ErrorController controller(1e-3 / std::sqrt(2.), 1e-3 / std::sqrt(2.), 1., 4);

@@ -5,10 +5,21 @@
 #define acf_time_error_controller_h
 
 #include <functional>
+#include <map>
 
 namespace ACF
 {
   class Archive;
+
+  /** What an accepted step took. */
+  struct StepWork
+  {
+    /** Linear solves. */
+    double n_solves = 0;
+
+    /** Whether it needed another tangent than that of the factorisations. */
+    bool is_hard = false;
+  };
 
   /**
    * Chooses step sizes on the lattice $\tau_0 2^{k/2}$, k of any sign, so that
@@ -25,7 +36,12 @@ namespace ACF
    * two points if what they need was allowed by several steps in a row: two if
    * there are factorisations for that size, three for two points and eight for
    * one if not, and twice as many each time a rise has been taken back at once.
-   * See theory (14.1).
+   *
+   * Large steps may need the tangent at the present state, which takes many
+   * solves. After such a step the size falls by one point, unless steps of that
+   * size took more solves per time, or those of the size above less. It rises
+   * to such a size after 8 steps at the soonest, twice as many each time. See
+   * theory (14.1).
    */
   class ErrorController
   {
@@ -64,7 +80,9 @@ namespace ACF
     /** The step was accepted: advances the time.
      * @param has_factors whether there are factorisations for a step size */
     void
-    accept(const double error, const std::function<bool(double)> &has_factors);
+    accept(const double error,
+           const std::function<bool(double)> &has_factors,
+           const StepWork &work = {});
 
     /** The error of the step is too large. */
     void
@@ -97,6 +115,10 @@ namespace ACF
     double
     allowed_factor(const double epsilon) const;
 
+    /** Takes note of the work. @return whether smaller steps may take less */
+    bool
+    is_too_hard(const StepWork &work);
+
     void
     decrease(const int points);
 
@@ -117,6 +139,15 @@ namespace ACF
     /** Accepted steps in a row that allowed one, and two points more. */
     unsigned int allowed_one = 0;
     unsigned int allowed_two = 0;
+
+    /** Solves per time of the last step of each level, 1/s. */
+    std::map<int, double> costs;
+
+    /** Level of the last step that was too hard, for how many steps no such
+     * level is tried, and for how many the next time (eighths). */
+    int hard_level         = 0;
+    unsigned int blocked   = 0;
+    unsigned int hard_wait = 1;
 
     unsigned int patience   = 1;
     unsigned int since_rise = 1000;

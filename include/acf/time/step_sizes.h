@@ -41,7 +41,9 @@ namespace ACF
 
     /** @param has_factors whether there are factorisations for a step size */
     void
-    accept(const double error, const std::function<bool(double)> &has_factors);
+    accept(const double error,
+           const std::function<bool(double)> &has_factors,
+           const StepWork &work);
 
     /** Saves or loads; begins anew if the sizes were found in another way. */
     void
