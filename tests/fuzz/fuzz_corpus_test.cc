@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <functional>
@@ -60,7 +59,7 @@ namespace
 
 
 
-  // Any exception, or a crash, fails the test.
+  // Any exception, a crash, or what takes the time limit of the test fails it.
   std::vector<Outcome>
   outcomes(const std::string &folder,
            const std::string &extension,
@@ -74,10 +73,7 @@ namespace
         SCOPED_TRACE(file.string());
         std::ostringstream text;
         text << std::ifstream(file, std::ios::binary).rdbuf();
-        const auto start = std::chrono::steady_clock::now();
         EXPECT_NO_THROW(result.push_back(read(text.str())));
-        EXPECT_LT(std::chrono::steady_clock::now() - start,
-                  std::chrono::seconds(5));
       }
     return result;
   }
