@@ -136,7 +136,7 @@ namespace ACF
                const std::vector<BodyRotation> &frames,
                ReducedStrainWork &work)
     {
-      FillLanes<n, is_damped> all;
+      FillLanes<n, is_damped> all{};
       all.x                = motion.position->begin();
       all.v                = motion.velocity->begin();
       all.X                = body.reference_positions.begin();
@@ -242,7 +242,7 @@ namespace ACF
            const ReducedStrainWork &work,
            const unsigned int i)
     {
-      AddMoments<has_drag> all;
+      AddMoments<has_drag> all{};
       all.n = motion.times.size();
       all.q = work.displacements.data() + 4 * i;
       all.k = work.stiffness_products.data() + 4 * i;
@@ -308,7 +308,7 @@ namespace ACF
           const Matrix3 P =
             frames[i].contract(moment<has_drag>(body, motion, work, i));
           AssertDimension(residual[i]->size(), body.n_unknowns());
-          CollectForces<has_drag> all;
+          CollectForces<has_drag> all{};
           all.n        = frames.size();
           all.rotation = Columns(R);
           all.balance  = Columns(R * P);

@@ -269,36 +269,6 @@ namespace ACF
 
   template <typename Number>
   typename CoupledSystem<Number>::Vector
-  CoupledSystem<Number>::constraint_forces(const Vector &mu) const
-  {
-    Vector phi = Vector::Zero(system.n_marker_values());
-    for (unsigned int k = 0; k < phi.size(); ++k)
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(D.matrix(), k);
-           entry;
-           ++entry)
-        phi(k) += entry.value() * mu(entry.row());
-    return phi;
-  }
-
-
-
-  template <typename Number>
-  typename CoupledSystem<Number>::Vector
-  CoupledSystem<Number>::constraint_values(const Vector &s) const
-  {
-    Vector g = Vector::Zero(system.n_constraints());
-    for (unsigned int k = 0; k < s.size(); ++k)
-      for (Eigen::SparseMatrix<double>::InnerIterator entry(D.matrix(), k);
-           entry;
-           ++entry)
-        g(entry.row()) += entry.value() * s(k);
-    return g;
-  }
-
-
-
-  template <typename Number>
-  typename CoupledSystem<Number>::Vector
   CoupledSystem<Number>::marker_displacements(const Vector &phi) const
   {
     Vector s(phi.size());
@@ -336,7 +306,8 @@ namespace ACF
       for (typename std::decay_t<decltype(H)>::InnerIterator entry(H, k); entry;
            ++entry)
         if (entry.row() / dim == k / dim &&
-            marker_sizes[k / dim] * std::abs(entry.value()) > least_contraction)
+            marker_sizes[k / dim] * std::abs(entry.value()) >
+              largest_contraction)
           return false;
     return true;
   }
@@ -353,8 +324,8 @@ namespace ACF
     const bool constrained = g.size() > 0;
     mu                     = g;
     if (constrained)
-      mu = constraint_system.solve(constraint_values(uncoupled) - g);
-    phi = constraint_forces(mu);
+      mu = constraint_system.solve(D.matrix() * uncoupled - g);
+    phi = D.matrix().transpose() * mu;
     if (H_transposed.matrix().nonZeros() == 0)
       return true;
 
@@ -370,14 +341,14 @@ namespace ACF
         if (constrained)
           {
             const Vector mu_change =
-              constraint_system.solve(constraint_values(change));
+              constraint_system.solve(D.matrix() * change);
             mu += mu_change;
-            const Vector reactions = constraint_forces(mu_change);
+            const Vector reactions = D.matrix().transpose() * mu_change;
             force += reactions;
             change -= marker_displacements(reactions);
           }
         const double next = largest_displacement(change);
-        if (next > least_contraction * contracted)
+        if (next > largest_contraction * contracted)
           return false;
         contracted = next;
         phi += force;
@@ -403,7 +374,7 @@ namespace ACF
         solution = marker_system.solve(rhs);
         mu       = solution.segment(n, g.size());
         phi      = H_transposed.matrix().transpose() * solution.head(n) +
-              constraint_forces(mu);
+              D.matrix().transpose() * mu;
       }
 
     for (unsigned int b = 0; b < system.bodies().size(); ++b)

@@ -169,8 +169,9 @@ namespace ACF
     since_rise                = 1000;
     rejections                = 0;
     costs.clear();
-    blocked   = 0;
-    hard_wait = 1;
+    hard_level = 0;
+    blocked    = 0;
+    hard_wait  = 1;
   }
 
 

@@ -79,15 +79,6 @@ namespace ACF
 
   namespace
   {
-    // Bodies times steps with another tangent than that of the factorisations.
-    unsigned long
-    n_hard_steps(const Statistics &statistics)
-    {
-      return statistics.exact_tangent_steps;
-    }
-
-
-
     void
     count_step(const double step_size,
                const double last_size,
@@ -185,7 +176,7 @@ namespace ACF
   TimeLoop::step()
   {
     const double step_size     = sizes.next();
-    const unsigned long n_hard = n_hard_steps(statistics);
+    const unsigned long n_hard = statistics.exact_tangent_steps;
     const unsigned long n_solves =
       statistics.real_solves + statistics.complex_solves;
     StepReport report;
@@ -223,7 +214,7 @@ namespace ACF
                  [&](const double size) { return stepper.has_factors(size); },
                  {1. * (statistics.real_solves + statistics.complex_solves -
                         n_solves),
-                  n_hard_steps(statistics) > n_hard});
+                  statistics.exact_tangent_steps > n_hard});
     present.time = sizes.time();
     count_step(step_size, last_size, report, statistics);
     if (parameters.tolerance > 0)

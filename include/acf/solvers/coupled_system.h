@@ -120,7 +120,7 @@ namespace ACF
 
   private:
     /** Of an iteration that is worth while. */
-    static constexpr double least_contraction = 0.1;
+    static constexpr double largest_contraction = 0.1;
 
     using Triplets = typename RepeatedPattern<Number>::Triplets;
 
@@ -143,14 +143,6 @@ namespace ACF
     evaluate_markers(const unsigned int body,
                      const Number *w,
                      Eigen::Ref<Vector> s) const;
-
-    /** $D^T \mu$ */
-    Vector
-    constraint_forces(const Vector &mu) const;
-
-    /** $D s$ */
-    Vector
-    constraint_values(const Vector &s) const;
 
     /** $R C R^T \phi$ */
     Vector
