@@ -19,6 +19,19 @@ namespace ACF
 
 
 
+  std::optional<double>
+  elastic_energy(const Body &body, const NodalVector &positions)
+  {
+    if (body.strain_measure() == StrainMeasure::reduced)
+      return reduced_strain_energy(body.operators(),
+                                   body.rotation_measure(),
+                                   positions);
+    NodalVector force(positions.size());
+    return body.reference().green_lagrange().force(positions, force);
+  }
+
+
+
   bool
   internal_force(const Body &body,
                  const NodalVector &positions,

@@ -569,14 +569,10 @@ namespace ACF
     for (unsigned int b = 0; b < system_bodies.size(); ++b)
       {
         const BodyOperators &operators = system_bodies[b].operators();
-        NodalVector product(operators.n_unknowns());
-        NodalVector scratch(operators.n_unknowns());
-
-        operators.mass_matrix.vmult(product, state.velocities[b]);
-        energy.kinetic += 0.5 * (state.velocities[b] * product);
+        energy.kinetic +=
+          0.5 * operators.mass_matrix.quadratic_form(state.velocities[b]);
         energy.elastic +=
-          elastic_force(system_bodies[b], state.positions[b], product, scratch)
-            .value();
+          elastic_energy(system_bodies[b], state.positions[b]).value();
         energy.potential -=
           operators.mass * (g * mass_mean(operators, state.positions[b]));
       }

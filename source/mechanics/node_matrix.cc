@@ -100,6 +100,14 @@ namespace ACF
           return sums_of_lanes(sums);
         }
 
+        ACF_INLINE void
+        scale(const double factor)
+        {
+          ACF_UNROLL
+          for (unsigned int i = 0; i < 3; ++i)
+            sums[i] *= factor;
+        }
+
         // components of x at all places
         Lanes x[3];
         // lanes of row i
@@ -137,6 +145,12 @@ namespace ACF
           return total;
         }
 
+        ACF_INLINE void
+        scale(const double factor)
+        {
+          total *= factor;
+        }
+
         Lanes x;
         Lanes total = {};
       };
@@ -149,22 +163,22 @@ namespace ACF
     {
       const NodeGraph &graph;
       const double *values;
-      std::size_t begin, end;
-      const double *x;
+      RowRange range;
 
-      // of the nodes from begin on
+      // a node is at the bits of its number that this has
+      std::size_t mask;
+      const double *x;
       double *y;
     };
+
+    constexpr std::size_t all_bits = -1;
 
 
 
     // Row a of n vectors, for those that are at the shift.
     template <unsigned int n, typename Entry, typename Lanes>
     ACF_INLINE void
-    multiply_row(const Rows &rows,
-                 const std::size_t a,
-                 const std::size_t shift,
-                 double *const y)
+    multiply_row(const Rows &rows, const std::size_t a, const std::size_t shift)
     {
       constexpr unsigned int distance  = 4 * n;
       const NodeGraph &graph           = rows.graph;
@@ -172,18 +186,21 @@ namespace ACF
       const unsigned int *const column = graph.upper_columns(a);
       const double *const entries =
         rows.values + Entry::size * graph.upper_start[a];
-      const double *const x = rows.x + shift;
-      const Lanes x_a       = load_lanes<Lanes>(x + distance * a);
+      const std::size_t mask = rows.mask;
+      const double *const x  = rows.x + shift;
+      double *const y        = rows.y + shift;
+      const std::size_t own  = distance * (a & mask);
+      const Lanes x_a        = load_lanes<Lanes>(x + own);
       typename Entry::template Row<Lanes> row(x_a);
       row.add(entries, x_a);
       for (std::size_t e = 1; e < n_entries; ++e)
         {
           const double *const A_ab = entries + Entry::size * e;
-          const std::size_t b      = distance * std::size_t(column[e]);
+          const std::size_t b      = distance * (column[e] & mask);
           row.add(A_ab, load_lanes<Lanes>(x + b));
-          add_lanes(row.transposed(A_ab), y + shift + b);
+          add_lanes(row.transposed(A_ab), y + b);
         }
-      add_lanes(row.sum(), y + shift + distance * a);
+      add_lanes(row.sum(), y + own);
     }
 
 
@@ -193,20 +210,19 @@ namespace ACF
     ACF_INLINE void
     multiply_entries(const Rows &rows)
     {
-      double *const y   = rows.y - 4 * n * rows.begin;
-      std::size_t reach = rows.begin;
-      for (std::size_t a = rows.begin; a < rows.end; ++a)
+      std::size_t reach = rows.range.reach;
+      for (std::size_t a = rows.range.begin; a < rows.range.end; ++a)
         {
           for (; reach <= rows.graph.last_column(a); ++reach)
             {
               ACF_UNROLL
               for (unsigned int v = 0; v < n; ++v)
-                store_lanes(Four{}, y + 4 * (n * reach + v));
+                store_lanes(Four{}, rows.y + 4 * (n * (reach & rows.mask) + v));
             }
           if constexpr (n >= 2)
-            multiply_row<n, Entry, Eight>(rows, a, 0, y);
+            multiply_row<n, Entry, Eight>(rows, a, 0);
           if constexpr (n % 2 == 1)
-            multiply_row<n, Entry, Four>(rows, a, 4 * (n - 1), y);
+            multiply_row<n, Entry, Four>(rows, a, 4 * (n - 1));
         }
     }
 
@@ -259,10 +275,7 @@ namespace ACF
         {
           parts[p].begin = n_nodes * p / n_parts;
           parts[p].end   = n_nodes * (p + 1) / n_parts;
-          parts[p].reach = parts[p].end;
-          for (std::size_t a = parts[p].begin; a < parts[p].end; ++a)
-            parts[p].reach =
-              std::max<std::size_t>(parts[p].reach, graph.last_column(a) + 1);
+          parts[p].reach = graph.reach(parts[p].begin, parts[p].end);
         }
       return parts;
     }
@@ -279,16 +292,24 @@ namespace ACF
       constexpr unsigned int distance = 4 * n;
       if (n_ranges(graph.n_nodes()) == 1)
         {
-          multiply_rows<n, Entry>(
-            {graph, values, 0, graph.n_nodes(), x.data(), y.data()});
+          multiply_rows<n, Entry>({graph,
+                                   values,
+                                   {0, graph.n_nodes(), 0},
+                                   all_bits,
+                                   x.data(),
+                                   y.data()});
           return;
         }
       std::vector<Part> parts = divide(graph);
       run_tasks(parts.size(), [&](const unsigned int p) {
         Part &part = parts[p];
         part.y.resize_fast(distance * (part.reach - part.begin));
-        multiply_rows<n, Entry>(
-          {graph, values, part.begin, part.end, x.data(), part.y.data()});
+        multiply_rows<n, Entry>({graph,
+                                 values,
+                                 {part.begin, part.end, part.begin},
+                                 all_bits,
+                                 x.data(),
+                                 part.y.data() - distance * part.begin});
       });
 
       // of the part that has the row and of those before which reach it
@@ -329,6 +350,80 @@ namespace ACF
 
 
 
+    template <typename Entry>
+    void
+    add_rows(const NodeGraph &graph,
+             const double *const values,
+             const RowRange &range,
+             NodeLanes &y,
+             const NodeLanes &x)
+    {
+      Assert((x.n_nodes() & (x.n_nodes() - 1)) == 0, ExcInternalError());
+      AssertDimension(x.n_nodes(), y.n_nodes());
+      AssertDimension(x.n_vectors(), y.n_vectors());
+      const Rows rows{
+        graph, values, range, x.n_nodes() - 1, x.data(), y.data()};
+      if (x.n_vectors() == 1)
+        multiply_rows<1, Entry>(rows);
+      else if (x.n_vectors() == 2)
+        multiply_rows<2, Entry>(rows);
+      else
+        multiply_rows<3, Entry>(rows);
+    }
+
+
+
+    // The sum over some rows of x_a (A_aa x_a + 2 sum_b>a A_ab x_b).
+    template <typename Entry>
+    struct QuadraticForm
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        Four sum = {};
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            const std::size_t n_entries      = graph.n_upper(a);
+            const unsigned int *const column = graph.upper_columns(a);
+            const double *const entries =
+              values + Entry::size * graph.upper_start[a];
+            const Four x_a = load_three(x + 3 * a);
+            typename Entry::template Row<Four> row(x_a);
+            for (std::size_t e = 1; e < n_entries; ++e)
+              row.add(entries + Entry::size * e,
+                      load_three(x + 3 * std::size_t(column[e])));
+            row.scale(2);
+            row.add(entries, x_a);
+            sum += x_a * row.sum();
+          }
+        result = sum[0] + sum[1] + sum[2];
+      }
+
+      const NodeGraph &graph;
+      const double *values;
+      const double *x;
+      std::size_t begin, end;
+      double &result;
+    };
+
+    template <typename Entry>
+    double
+    quadratic_form(const NodeGraph &graph,
+                   const double *const values,
+                   const NodalVector &x)
+    {
+      AssertDimension(x.size(), dim * graph.n_nodes());
+      return sum_ranges<double>(
+        graph.n_nodes(), [&](const std::size_t begin, const std::size_t end) {
+          double result;
+          run_vectorized(
+            QuadraticForm<Entry>{graph, values, x.begin(), begin, end, result});
+          return result;
+        });
+    }
+
+
+
     // Two or three vectors at once.
     template <typename Entry>
     void
@@ -360,13 +455,27 @@ namespace ACF
     , column(std::move(new_column))
     , upper_start(row_start.size(), 0)
   {
+    unsigned int largest_reach = 0;
     for (unsigned int a = 0; a < n_nodes(); ++a)
       {
         const auto begin = column.begin() + row_start[a];
         const auto end   = column.begin() + row_start[a + 1];
         upper_start[a + 1] =
           upper_start[a] + (end - std::lower_bound(begin, end, a));
+        largest_reach = std::max(largest_reach, last_column(a) + 1);
+        bandwidth     = std::max(bandwidth, largest_reach - a);
       }
+  }
+
+
+
+  std::size_t
+  NodeGraph::reach(const std::size_t begin, const std::size_t end) const
+  {
+    std::size_t result = end;
+    for (std::size_t a = begin; a < end; ++a)
+      result = std::max<std::size_t>(result, last_column(a) + 1);
+    return result;
   }
 
 
@@ -431,9 +540,19 @@ namespace ACF
 
 
   void
-  ScalarNodeMatrix::vmult(NodeLanes &y, const NodeLanes &x) const
+  ScalarNodeMatrix::add_rows(const RowRange &rows,
+                             NodeLanes &y,
+                             const NodeLanes &x) const
   {
-    multiply<Scalar>(*node_graph, values.data(), y, x);
+    ACF::add_rows<Scalar>(*node_graph, values.data(), rows, y, x);
+  }
+
+
+
+  double
+  ScalarNodeMatrix::quadratic_form(const NodalVector &x) const
+  {
+    return ACF::quadratic_form<Scalar>(*node_graph, values.data(), x);
   }
 
 
@@ -517,10 +636,20 @@ namespace ACF
 
 
 
-  void
-  BlockNodeMatrix::vmult(NodeLanes &y, const NodeLanes &x) const
+  double
+  BlockNodeMatrix::quadratic_form(const NodalVector &x) const
   {
-    multiply<Block>(*node_graph, values.data(), y, x);
+    return ACF::quadratic_form<Block>(*node_graph, values.data(), x);
+  }
+
+
+
+  void
+  BlockNodeMatrix::add_rows(const RowRange &rows,
+                            NodeLanes &y,
+                            const NodeLanes &x) const
+  {
+    ACF::add_rows<Block>(*node_graph, values.data(), rows, y, x);
   }
 
 

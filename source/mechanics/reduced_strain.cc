@@ -6,6 +6,8 @@
 #include <acf/mechanics/node_lanes.h>
 #include <acf/mechanics/reduced_strain.h>
 
+#include <array>
+
 namespace ACF
 {
   namespace
@@ -55,33 +57,75 @@ namespace ACF
   {
     // The sums of NodalMoments for the nodes from begin to end; the mean is not
     // divided by the mass.
+    template <unsigned int n>
     struct AddMoments
     {
       ACF_INLINE void
       operator()() const
       {
-        Four gradient[dim] = {};
-        Four mean          = {};
+        Four gradients[n][dim] = {};
+        Four means[n]          = {};
         for (std::size_t a = begin; a < end; ++a)
           {
-            const Four x_a = load_three(x + dim * a);
             const Four g_a = load_three(g + dim * a);
-            gradient[0] += splat<0>(x_a) * g_a;
-            gradient[1] += splat<1>(x_a) * g_a;
-            gradient[2] += splat<2>(x_a) * g_a;
-            mean += m[a] * x_a;
+            ACF_UNROLL
+            for (unsigned int v = 0; v < n; ++v)
+              {
+                const Four x_a = load_three(x[v] + dim * a);
+                gradients[v][0] += splat<0>(x_a) * g_a;
+                gradients[v][1] += splat<1>(x_a) * g_a;
+                gradients[v][2] += splat<2>(x_a) * g_a;
+                means[v] += m[a] * x_a;
+              }
           }
-        for (unsigned int i = 0; i < dim; ++i)
-          for (unsigned int j = 0; j < dim; ++j)
-            result.gradient[i][j] = gradient[i][j];
-        for (unsigned int i = 0; i < dim; ++i)
-          result.mean[i] = mean[i];
+        for (unsigned int v = 0; v < n; ++v)
+          for (unsigned int i = 0; i < dim; ++i)
+            {
+              for (unsigned int j = 0; j < dim; ++j)
+                result[v].gradient[i][j] = gradients[v][i][j];
+              result[v].mean[i] = means[v][i];
+            }
       }
 
       std::size_t begin, end;
-      const double *x, *g, *m;
-      NodalMoments &result;
+      const double *x[n];
+      const double *g, *m;
+      NodalMoments *result;
     };
+
+
+
+    template <unsigned int n>
+    std::array<NodalMoments, n>
+    add_moments(const BodyOperators &body,
+                const std::array<const NodalVector *, n> &fields)
+    {
+      AddMoments<n> all{};
+      for (unsigned int v = 0; v < n; ++v)
+        {
+          AssertDimension(fields[v]->size(), body.n_unknowns());
+          all.x[v] = fields[v]->begin();
+        }
+      all.g = body.averaging_vectors.begin();
+      all.m = body.nodal_masses.data();
+
+      const unsigned int n_parts = n_ranges(body.n_nodes);
+      std::vector<std::array<NodalMoments, n>> parts(n_parts);
+      run_tasks(n_parts, [&](const unsigned int p) {
+        AddMoments<n> part = all;
+        part.begin         = std::size_t(body.n_nodes) * p / n_parts;
+        part.end           = std::size_t(body.n_nodes) * (p + 1) / n_parts;
+        part.result        = parts[p].data();
+        run_vectorized(part);
+      });
+      for (unsigned int v = 0; v < n; ++v)
+        {
+          for (unsigned int p = 1; p < n_parts; ++p)
+            parts[0][v] += parts[p][v];
+          parts[0][v].mean /= body.mass;
+        }
+      return parts[0];
+    }
   } // namespace
 
 
@@ -107,20 +151,28 @@ namespace ACF
   NodalMoments
   nodal_moments(const BodyOperators &body, const NodalVector &field)
   {
-    AssertDimension(field.size(), body.n_unknowns());
-    NodalMoments sums = sum_ranges<NodalMoments>(
-      body.n_nodes, [&](const std::size_t begin, const std::size_t end) {
-        NodalMoments part;
-        run_vectorized(AddMoments{begin,
-                                  end,
-                                  field.begin(),
-                                  body.averaging_vectors.begin(),
-                                  body.nodal_masses.data(),
-                                  part});
-        return part;
-      });
-    sums.mean /= body.mass;
-    return sums;
+    return add_moments<1>(body, {{&field}})[0];
+  }
+
+
+
+  std::vector<NodalMoments>
+  nodal_moments(const BodyOperators &body,
+                const std::vector<const NodalVector *> &fields)
+  {
+    std::vector<NodalMoments> moments;
+    const auto add_all = [&moments](const auto &some) {
+      moments.insert(moments.end(), some.begin(), some.end());
+    };
+    std::size_t v = 0;
+    for (; v + 3 <= fields.size(); v += 3)
+      add_all(
+        add_moments<3>(body, {{fields[v], fields[v + 1], fields[v + 2]}}));
+    if (v + 2 == fields.size())
+      add_all(add_moments<2>(body, {{fields[v], fields[v + 1]}}));
+    else if (v + 1 == fields.size())
+      add_all(add_moments<1>(body, {{fields[v]}}));
+    return moments;
   }
 
 
@@ -177,17 +229,14 @@ namespace ACF
 
 
   std::optional<Vector3>
-  body_spin(const BodyOperators &body,
-            const RotationMeasure measure,
-            const NodalVector &positions,
-            const NodalVector &velocities)
+  body_spin(const RotationMeasure measure,
+            const Matrix3 &gradient,
+            const Matrix3 &velocity_gradient)
   {
-    const auto frame =
-      body_rotation(mean_deformation_gradient(body, positions), measure);
+    const auto frame = body_rotation(gradient, measure);
     if (!frame)
       return {};
-    return frame->rotation *
-           frame_spin(*frame, mean_deformation_gradient(body, velocities));
+    return frame->rotation * frame_spin(*frame, velocity_gradient);
   }
 
 
@@ -265,6 +314,22 @@ namespace ACF
     body.stiffness_matrix.vmult(force, q);
 
     return force_of_products(body, *frame, q, force);
+  }
+
+
+
+  std::optional<double>
+  reduced_strain_energy(const BodyOperators &body,
+                        const RotationMeasure measure,
+                        const NodalVector &positions)
+  {
+    const std::optional<BodyRotation> frame =
+      body_rotation(mean_deformation_gradient(body, positions), measure);
+    if (!frame)
+      return {};
+    NodalVector q(positions.size());
+    co_rotated_displacement(body, positions, frame->rotation, q);
+    return 0.5 * body.stiffness_matrix.quadratic_form(q);
   }
 
 

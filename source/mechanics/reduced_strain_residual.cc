@@ -5,7 +5,7 @@
 #include <acf/base/processor.h>
 #include <acf/mechanics/reduced_strain_residual.h>
 
-#include <array>
+#include <algorithm>
 
 namespace ACF
 {
@@ -63,10 +63,37 @@ namespace ACF
 
 
 
+    // What is needed of the nodes that a few rows of the matrices reach: it
+    // stays in the caches, and serves one body after the other.
+    struct Windows
+    {
+      NodeLanes displacements, accelerations;
+      NodeLanes stiffness_products, mass_products;
+
+      // with damping: q + beta q'; q' and M q'
+      NodeLanes strained, rates, momenta;
+    };
+
+    // Rows of the matrices at once.
+    constexpr std::size_t n_rows = 64;
+
+    thread_local Windows windows;
+
+    std::size_t
+    window_size(const NodeGraph &graph)
+    {
+      std::size_t size = 1;
+      while (size < n_rows + graph.bandwidth)
+        size *= 2;
+      return size;
+    }
+
+
+
     // q_i and a_i - g_i of the nodes from begin to end, and with damping their
     // q_i + beta q_i' and, unless there is no place for it, q_i'.
     template <unsigned int n, bool is_damped>
-    struct FillLanes
+    struct FillWindows
     {
       ACF_INLINE void
       operator()() const
@@ -83,7 +110,7 @@ namespace ACF
             ACF_UNROLL
             for (unsigned int i = 0; i < n; ++i)
               {
-                const std::size_t place = 4 * (n * a + i);
+                const std::size_t place = 4 * (n * (a & mask) + i);
                 const Four y            = inverse_rotations[i] *
                                (x_a + times[i] * v_a + z_a[i] - centres[i]);
                 const Four q = y - X_a;
@@ -108,7 +135,7 @@ namespace ACF
           }
       }
 
-      std::size_t begin, end;
+      std::size_t begin, end, mask;
       const double *x, *v, *X;
       Four reference_centre;
       const double *z[n];
@@ -130,202 +157,315 @@ namespace ACF
 
 
     template <unsigned int n, bool is_damped>
-    void
-    fill_lanes(const BodyOperators &body,
-               const NodalMotion &motion,
-               const std::vector<BodyRotation> &frames,
-               ReducedStrainWork &work)
+    FillWindows<n, is_damped>
+    fill_windows(const BodyOperators &body,
+                 const NodalMotion &motion,
+                 const std::vector<BodyRotation> &frames)
     {
-      FillLanes<n, is_damped> all{};
-      all.x                = motion.position->begin();
-      all.v                = motion.velocity->begin();
-      all.X                = body.reference_positions.begin();
-      all.reference_centre = lanes_of(body.centre);
-      all.displacements    = work.displacements.data();
-      all.accelerations    = work.accelerations.data();
+      FillWindows<n, is_damped> fill{};
+      fill.mask             = windows.displacements.n_nodes() - 1;
+      fill.x                = motion.position->begin();
+      fill.v                = motion.velocity->begin();
+      fill.X                = body.reference_positions.begin();
+      fill.reference_centre = lanes_of(body.centre);
+      fill.displacements    = windows.displacements.data();
+      fill.accelerations    = windows.accelerations.data();
       for (unsigned int i = 0; i < n; ++i)
         {
-          all.z[i]                 = motion.increments[i]->begin();
-          all.times[i]             = motion.times[i];
-          all.centres[i]           = lanes_of(motion.moments[i].mean);
-          all.inverse_rotations[i] = Columns(transpose(frames[i].rotation));
-          all.gravity[i]           = lanes_of(motion.gravity[i]);
+          fill.z[i]                 = motion.increments[i]->begin();
+          fill.times[i]             = motion.times[i];
+          fill.centres[i]           = lanes_of(motion.moments[i].mean);
+          fill.inverse_rotations[i] = Columns(transpose(frames[i].rotation));
+          fill.gravity[i]           = lanes_of(motion.gravity[i]);
           for (unsigned int j = 0; j < n; ++j)
-            all.second_rates[i][j] = motion.second_rates(i, j);
+            fill.second_rates[i][j] = motion.second_rates(i, j);
         }
       if (is_damped)
         {
-          all.stiffness_damping = motion.stiffness_damping;
-          all.strained          = work.strained.data();
-          all.rates = motion.mass_damping != 0 ? work.rates.data() : nullptr;
+          fill.stiffness_damping = motion.stiffness_damping;
+          fill.strained          = windows.strained.data();
+          fill.rates =
+            motion.mass_damping != 0 ? windows.rates.data() : nullptr;
           for (unsigned int i = 0; i < n; ++i)
             {
               const NodalMoments &velocity = motion.velocity_moments[i];
-              all.centre_velocities[i]     = lanes_of(velocity.mean);
-              all.spins[i] = lanes_of(frame_spin(frames[i], velocity.gradient));
+              fill.centre_velocities[i]    = lanes_of(velocity.mean);
+              fill.spins[i] =
+                lanes_of(frame_spin(frames[i], velocity.gradient));
               for (unsigned int j = 0; j < n; ++j)
-                all.first_rates[i][j] = motion.first_rates(i, j);
+                fill.first_rates[i][j] = motion.first_rates(i, j);
             }
         }
-      run_ranges(body.n_nodes,
-                 [&](const std::size_t begin, const std::size_t end) {
-                   FillLanes<n, is_damped> part = all;
-                   part.begin                   = begin;
-                   part.end                     = end;
-                   run_vectorized(part);
-                 });
+      return fill;
+    }
+
+
+
+    // Adds sum_a q_a x k_a, and with forces alpha d there
+    // alpha sum_a (q_a + X_a) x d_a, of the nodes from begin to end; forces
+    // become -R (k_a + alpha d_a) - m_a.
+    template <unsigned int n, bool has_drag>
+    struct CollectForces
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        Four sum[n];
+        ACF_UNROLL
+        for (unsigned int i = 0; i < n; ++i)
+          sum[i] = load_lanes<Four>(moments + 4 * i);
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            ACF_UNROLL
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                const std::size_t place = 4 * (n * (a & mask) + i);
+                const Four q_a          = load_lanes<Four>(q + place);
+                Four k_a                = load_lanes<Four>(k + place);
+                sum[i] += cross_product(q_a, k_a);
+                if (has_drag)
+                  {
+                    const Four d_a = drag_factor * load_lanes<Four>(d + place);
+                    sum[i] += cross_product(q_a + load_three(X + dim * a) -
+                                              reference_centre,
+                                            d_a);
+                    k_a += d_a;
+                  }
+                store_three(-(rotations[i] * k_a) - load_lanes<Four>(m + place),
+                            forces[i] + dim * (a - first_force));
+              }
+          }
+        ACF_UNROLL
+        for (unsigned int i = 0; i < n; ++i)
+          store_lanes(sum[i], moments + 4 * i);
+      }
+
+      std::size_t begin, end, mask;
+      Columns rotations[n];
+      const double *q, *k, *d, *m;
+      const double *X;
+      Four reference_centre;
+      double drag_factor;
+      double *moments;
+
+      // those of the nodes from this one on
+      double *forces[n];
+      std::size_t first_force;
+    };
+
+
+
+    template <unsigned int n, bool has_drag>
+    CollectForces<n, has_drag>
+    collect_forces(const BodyOperators &body,
+                   const NodalMotion &motion,
+                   const std::vector<BodyRotation> &frames,
+                   const std::vector<NodalVector *> &forces)
+    {
+      CollectForces<n, has_drag> collect{};
+      collect.mask = windows.displacements.n_nodes() - 1;
+      collect.q    = windows.displacements.data();
+      collect.k    = windows.stiffness_products.data();
+      collect.m    = windows.mass_products.data();
+      if (has_drag)
+        collect.d = windows.momenta.data();
+      collect.X                = body.reference_positions.begin();
+      collect.reference_centre = lanes_of(body.centre);
+      collect.drag_factor      = motion.mass_damping;
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          collect.rotations[i] = Columns(frames[i].rotation);
+          collect.forces[i]    = forces[i]->begin();
+        }
+      return collect;
+    }
+
+
+
+    // What some rows of the matrices give.
+    struct Part
+    {
+      // about the centre, of the internal forces at each time
+      std::vector<Vector3> moments;
+
+      // and of the forces on nodes behind the rows
+      std::vector<NodalVector> rest;
+    };
+
+    template <unsigned int n, bool is_damped>
+    Part
+    add_rows(const BodyOperators &body,
+             const NodalMotion &motion,
+             const std::vector<BodyRotation> &frames,
+             const std::vector<NodalVector *> &forces,
+             const std::size_t begin,
+             const std::size_t end)
+    {
+      const bool has_drag    = motion.mass_damping != 0;
+      const NodeGraph &graph = body.stiffness_matrix.graph();
+      const std::size_t size = window_size(graph);
+      for (NodeLanes *const lanes : {&windows.displacements,
+                                     &windows.accelerations,
+                                     &windows.stiffness_products,
+                                     &windows.mass_products})
+        lanes->resize(size, n);
+      if (is_damped)
+        windows.strained.resize(size, n);
+      if (has_drag)
+        {
+          windows.rates.resize(size, n);
+          windows.momenta.resize(size, n);
+        }
+
+      double moments[4 * n] = {};
+      auto fill             = fill_windows<n, is_damped>(body, motion, frames);
+      auto collect = collect_forces<n, false>(body, motion, frames, forces);
+      auto collect_with_drag =
+        collect_forces<n, true>(body, motion, frames, forces);
+      collect.moments = collect_with_drag.moments = moments;
+      const auto collect_nodes                    = [&](const std::size_t first,
+                                     const std::size_t last) {
+        if (has_drag)
+          {
+            collect_with_drag.begin = first;
+            collect_with_drag.end   = last;
+            run_vectorized(collect_with_drag);
+          }
+        else
+          {
+            collect.begin = first;
+            collect.end   = last;
+            run_vectorized(collect);
+          }
+      };
+
+      fill.end = begin;
+      for (std::size_t first = begin; first < end; first += n_rows)
+        {
+          const std::size_t last = std::min(first + n_rows, end);
+          const RowRange rows{first, last, fill.end};
+          fill.begin = fill.end;
+          fill.end   = std::max(fill.end, graph.reach(first, last));
+          run_vectorized(fill);
+          body.stiffness_matrix.add_rows(rows,
+                                         windows.stiffness_products,
+                                         is_damped ? windows.strained
+                                                   : windows.displacements);
+          body.mass_matrix.add_rows(rows,
+                                    windows.mass_products,
+                                    windows.accelerations);
+          if (has_drag)
+            body.mass_matrix.add_rows(rows, windows.momenta, windows.rates);
+          collect_nodes(first, last);
+        }
+
+      Part part;
+      part.rest.resize(n);
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          part.rest[i].reinit(dim * (fill.end - end));
+          collect.forces[i] = collect_with_drag.forces[i] =
+            part.rest[i].begin();
+        }
+      collect.first_force = collect_with_drag.first_force = end;
+      collect_nodes(end, fill.end);
+      for (unsigned int i = 0; i < n; ++i)
+        part.moments.emplace_back(
+          Vector3({moments[4 * i], moments[4 * i + 1], moments[4 * i + 2]}));
+      return part;
+    }
+
+
+
+    // f_a += R P g_a at each of n times.
+    template <unsigned int n>
+    struct AddBalance
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        for (std::size_t a = begin; a < end; ++a)
+          {
+            const Four g_a = load_three(g + dim * a);
+            ACF_UNROLL
+            for (unsigned int i = 0; i < n; ++i)
+              {
+                double *const f = forces[i] + dim * a;
+                store_three(load_three(f) + balances[i] * g_a, f);
+              }
+          }
+      }
+
+      std::size_t begin, end;
+      const double *g;
+      Columns balances[n];
+      double *forces[n];
+    };
+
+
+
+    template <unsigned int n, bool is_damped>
+    void
+    add_forces(const BodyOperators &body,
+               const NodalMotion &motion,
+               const std::vector<BodyRotation> &frames,
+               const std::vector<NodalVector *> &forces)
+    {
+      const std::size_t n_nodes  = body.n_nodes;
+      const unsigned int n_parts = n_ranges(n_nodes);
+      std::vector<Part> parts(n_parts);
+      run_tasks(n_parts, [&](const unsigned int p) {
+        parts[p] = add_rows<n, is_damped>(body,
+                                          motion,
+                                          frames,
+                                          forces,
+                                          n_nodes * p / n_parts,
+                                          n_nodes * (p + 1) / n_parts);
+      });
+      for (unsigned int p = 1; p < n_parts; ++p)
+        for (unsigned int i = 0; i < n; ++i)
+          {
+            parts[0].moments[i] += parts[p].moments[i];
+            const NodalVector &rest = parts[p - 1].rest[i];
+            double *const force =
+              forces[i]->begin() + dim * (n_nodes * p / n_parts);
+            for (std::size_t k = 0; k < rest.size(); ++k)
+              force[k] += rest[k];
+          }
+
+      AddBalance<n> all{};
+      all.g = body.averaging_vectors.begin();
+      for (unsigned int i = 0; i < n; ++i)
+        {
+          all.balances[i] = Columns(frames[i].rotation *
+                                    frames[i].contract(parts[0].moments[i]));
+          all.forces[i]   = forces[i]->begin();
+        }
+      run_ranges(n_nodes, [&](const std::size_t begin, const std::size_t end) {
+        AddBalance<n> part = all;
+        part.begin         = begin;
+        part.end           = end;
+        run_vectorized(part);
+      });
     }
 
 
 
     template <bool is_damped>
     void
-    fill_lanes(const BodyOperators &body,
+    add_forces(const BodyOperators &body,
                const NodalMotion &motion,
                const std::vector<BodyRotation> &frames,
-               ReducedStrainWork &work)
+               const std::vector<NodalVector *> &forces)
     {
-      const unsigned int n = motion.times.size();
-      work.displacements.resize(body.n_nodes, n);
-      work.accelerations.resize(body.n_nodes, n);
-      if (is_damped)
-        work.strained.resize(body.n_nodes, n);
-      if (motion.mass_damping != 0)
-        work.rates.resize(body.n_nodes, n);
-      if (n == 1)
-        fill_lanes<1, is_damped>(body, motion, frames, work);
-      else if (n == 2)
-        fill_lanes<2, is_damped>(body, motion, frames, work);
-      else
-        fill_lanes<3, is_damped>(body, motion, frames, work);
-    }
-
-
-
-    // sum_a q_a x k_a of one of n vectors, and with forces d there
-    // sum_a (q_a + X_a) x d_a.
-    template <bool has_drag>
-    struct AddMoments
-    {
-      ACF_INLINE void
-      operator()() const
-      {
-        Four sum = {}, drag_sum = {};
-        for (std::size_t a = begin; a < end; ++a)
-          {
-            const Four q_a = load_lanes<Four>(q + 4 * n * a);
-            sum += cross_product(q_a, load_lanes<Four>(k + 4 * n * a));
-            if (has_drag)
-              drag_sum +=
-                cross_product(q_a + load_three(X + dim * a) - reference_centre,
-                              load_lanes<Four>(d + 4 * n * a));
-          }
-        store_three(sum + drag_factor * drag_sum, result);
-      }
-
-      std::size_t begin, end;
-      unsigned int n;
-      const double *q, *k, *d;
-      const double *X;
-      Four reference_centre;
-      double drag_factor;
-      double *result;
-    };
-
-
-
-    // About the centre, of the internal forces at time i.
-    template <bool has_drag>
-    Vector3
-    moment(const BodyOperators &body,
-           const NodalMotion &motion,
-           const ReducedStrainWork &work,
-           const unsigned int i)
-    {
-      AddMoments<has_drag> all{};
-      all.n = motion.times.size();
-      all.q = work.displacements.data() + 4 * i;
-      all.k = work.stiffness_products.data() + 4 * i;
-      if (has_drag)
-        all.d = work.momenta.data() + 4 * i;
-      all.X                = body.reference_positions.begin();
-      all.reference_centre = lanes_of(body.centre);
-      all.drag_factor      = motion.mass_damping;
-      return sum_ranges<Vector3>(body.n_nodes,
-                                 [&](const std::size_t begin,
-                                     const std::size_t end) {
-                                   double sum[dim];
-                                   AddMoments<has_drag> part = all;
-                                   part.begin                = begin;
-                                   part.end                  = end;
-                                   part.result               = sum;
-                                   run_vectorized(part);
-                                   return Vector3(sum);
-                                 });
-    }
-
-
-
-    // R (P g_a - k_a - alpha d_a) - m_a for one of n vectors.
-    template <bool has_drag>
-    struct CollectForces
-    {
-      ACF_INLINE void
-      operator()() const
-      {
-        for (std::size_t a = begin; a < end; ++a)
-          {
-            Four k_a = load_lanes<Four>(k + 4 * n * a);
-            if (has_drag)
-              k_a += drag_factor * load_lanes<Four>(d + 4 * n * a);
-            store_three(balance * load_three(g + dim * a) - rotation * k_a -
-                          load_lanes<Four>(m + 4 * n * a),
-                        force + dim * a);
-          }
-      }
-
-      std::size_t begin, end;
-      unsigned int n;
-      Columns rotation, balance;
-      const double *g, *k, *d, *m;
-      double drag_factor;
-      double *force;
-    };
-
-
-
-    template <bool has_drag>
-    void
-    collect_forces(const BodyOperators &body,
-                   const NodalMotion &motion,
-                   const std::vector<BodyRotation> &frames,
-                   const ReducedStrainWork &work,
-                   const std::vector<NodalVector *> &residual)
-    {
-      for (unsigned int i = 0; i < frames.size(); ++i)
+      switch (frames.size())
         {
-          const Matrix3 &R = frames[i].rotation;
-          const Matrix3 P =
-            frames[i].contract(moment<has_drag>(body, motion, work, i));
-          AssertDimension(residual[i]->size(), body.n_unknowns());
-          CollectForces<has_drag> all{};
-          all.n        = frames.size();
-          all.rotation = Columns(R);
-          all.balance  = Columns(R * P);
-          all.g        = body.averaging_vectors.begin();
-          all.k        = work.stiffness_products.data() + 4 * i;
-          if (has_drag)
-            all.d = work.momenta.data() + 4 * i;
-          all.m           = work.mass_products.data() + 4 * i;
-          all.drag_factor = motion.mass_damping;
-          all.force       = residual[i]->begin();
-          run_ranges(body.n_nodes,
-                     [&](const std::size_t begin, const std::size_t end) {
-                       CollectForces<has_drag> part = all;
-                       part.begin                   = begin;
-                       part.end                     = end;
-                       run_vectorized(part);
-                     });
+          case 1:
+            return add_forces<1, is_damped>(body, motion, frames, forces);
+          case 2:
+            return add_forces<2, is_damped>(body, motion, frames, forces);
+          default:
+            return add_forces<3, is_damped>(body, motion, frames, forces);
         }
     }
   } // namespace
@@ -336,8 +476,7 @@ namespace ACF
   reduced_strain_residual(const BodyOperators &body,
                           const RotationMeasure measure,
                           const NodalMotion &motion,
-                          const std::vector<NodalVector *> &residual,
-                          ReducedStrainWork &work)
+                          const std::vector<NodalVector *> &residual)
   {
     std::vector<BodyRotation> frames;
     for (const NodalMoments &moments : motion.moments)
@@ -348,21 +487,12 @@ namespace ACF
         frames.push_back(*frame);
       }
 
+    for (unsigned int i = 0; i < residual.size(); ++i)
+      AssertDimension(residual[i]->size(), body.n_unknowns());
     if (motion.is_damped())
-      fill_lanes<true>(body, motion, frames, work);
+      add_forces<true>(body, motion, frames, residual);
     else
-      fill_lanes<false>(body, motion, frames, work);
-    body.stiffness_matrix.vmult(work.stiffness_products,
-                                motion.is_damped() ? work.strained
-                                                   : work.displacements);
-    body.mass_matrix.vmult(work.mass_products, work.accelerations);
-    if (motion.mass_damping != 0)
-      {
-        body.mass_matrix.vmult(work.momenta, work.rates);
-        collect_forces<true>(body, motion, frames, work, residual);
-      }
-    else
-      collect_forces<false>(body, motion, frames, work, residual);
+      add_forces<false>(body, motion, frames, residual);
     return true;
   }
 } // namespace ACF

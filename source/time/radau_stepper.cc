@@ -74,11 +74,11 @@ namespace ACF
       return;
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
-        const Vector3 spin = body_spin(system.bodies()[b].operators(),
-                                       system.bodies()[b].rotation_measure(),
-                                       state.positions[b],
-                                       state.velocities[b])
-                               .value_or(Vector3());
+        const Vector3 spin =
+          body_spin(system.bodies()[b].rotation_measure(),
+                    equations.start_moments(b).gradient,
+                    equations.start_velocity_moments(b).gradient)
+            .value_or(Vector3());
         turns[b] = spin.norm() * equations.step_size() > fast_turn;
         if (!turns[b])
           continue;
@@ -174,6 +174,7 @@ namespace ACF
     do
       {
         predict(state);
+        equations.increments_have_changed();
         iteration.run(equations, tolerances(), report);
     } while (!report.converged && iteration.linearize_better());
     iteration.end_step(equations, report);

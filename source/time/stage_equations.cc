@@ -27,6 +27,7 @@ namespace ACF
     work.resize(system.bodies().size());
     position_moments.resize(system.bodies().size());
     velocity_moments.resize(system.bodies().size());
+    increment_moments.resize(system.bodies().size());
     marker_nodes.resize(system.bodies().size());
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       if (system.bodies()[b].strain_measure() == StrainMeasure::green_lagrange)
@@ -50,8 +51,12 @@ namespace ACF
     for (unsigned int b = 0; b < system.bodies().size(); ++b)
       {
         const BodyOperators &body = system.bodies()[b].operators();
-        position_moments[b]       = nodal_moments(body, state->positions[b]);
-        velocity_moments[b]       = nodal_moments(body, state->velocities[b]);
+        const std::vector<NodalMoments> moments =
+          nodal_moments(body,
+                        std::vector<const NodalVector *>{
+                          &state->positions[b], &state->velocities[b]});
+        position_moments[b] = moments[0];
+        velocity_moments[b] = moments[1];
       }
     if (system.n_marker_values() == 0)
       return;
@@ -118,27 +123,41 @@ namespace ACF
 
 
 
-  NodalMoments
-  StageEquations::moments(const unsigned int stage, const unsigned int b) const
+  void
+  StageEquations::increments_have_changed()
   {
-    return moments(stage,
-                   b,
-                   nodal_moments(system.bodies()[b].operators(),
-                                 increments[stage][b]));
+    for (auto &moments : increment_moments)
+      moments.clear();
+  }
+
+
+
+  const std::vector<NodalMoments> &
+  StageEquations::moments_of_increments(const unsigned int b)
+  {
+    const auto evaluate = [&]() {
+      std::vector<const NodalVector *> stages;
+      for (const SystemVector &stage : increments)
+        stages.push_back(&stage[b]);
+      return nodal_moments(system.bodies()[b].operators(), stages);
+    };
+    if (increment_moments[b].empty())
+      increment_moments[b] = evaluate();
+    Assert(increment_moments[b][0].mean == evaluate()[0].mean,
+           ExcMessage("increments_have_changed() was not called."));
+    return increment_moments[b];
   }
 
 
 
   NodalMoments
-  StageEquations::moments(const unsigned int stage,
-                          const unsigned int b,
-                          const NodalMoments &of_increment) const
+  StageEquations::moments(const unsigned int stage, const unsigned int b)
   {
     return add(add(position_moments[b],
                    tableau.c(stage) * tau,
                    velocity_moments[b]),
                1,
-               of_increment);
+               moments_of_increments(b)[stage]);
   }
 
 
@@ -208,15 +227,12 @@ namespace ACF
     motion.position     = &state->positions[b];
     motion.velocity     = &state->velocities[b];
     motion.second_rates = A_inverse_squared / (tau * tau);
-    std::vector<NodalMoments> increment_moments;
     std::vector<NodalVector *> forces;
     for (unsigned int i = 0; i < n_stages; ++i)
       {
         motion.times.push_back(tableau.c(i) * tau);
         motion.increments.push_back(&increments[i][b]);
-        increment_moments.push_back(
-          nodal_moments(body.operators(), increments[i][b]));
-        motion.moments.push_back(moments(i, b, increment_moments[i]));
+        motion.moments.push_back(moments(i, b));
         motion.gravity.push_back(system.gravity(time(i)));
         forces.push_back(&residual[i][b]);
       }
@@ -229,16 +245,14 @@ namespace ACF
           {
             NodalMoments velocity = velocity_moments[b];
             for (unsigned int j = 0; j < n_stages; ++j)
-              velocity =
-                add(velocity, motion.first_rates(i, j), increment_moments[j]);
+              velocity = add(velocity,
+                             motion.first_rates(i, j),
+                             moments_of_increments(b)[j]);
             motion.velocity_moments.push_back(velocity);
           }
       }
-    if (!reduced_strain_residual(body.operators(),
-                                 body.rotation_measure(),
-                                 motion,
-                                 forces,
-                                 work[b].reduced))
+    if (!reduced_strain_residual(
+          body.operators(), body.rotation_measure(), motion, forces))
       return false;
     if (system.has_surface_loads(b))
       for (unsigned int i = 0; i < n_stages; ++i)
@@ -257,8 +271,7 @@ namespace ACF
   {
     const Body &body            = system.bodies()[b];
     const unsigned int n_stages = tableau.n_stages();
-    auto &[reduced, position, velocity, scratch, accelerations, inertia] =
-      work[b];
+    auto &[position, velocity, scratch, accelerations, inertia] = work[b];
     accelerations.resize(n_stages);
     inertia.resize(n_stages);
     if (scratch.size() == 0)
@@ -351,7 +364,7 @@ namespace ACF
 
 
   StageRotations
-  StageEquations::rotations() const
+  StageEquations::rotations()
   {
     const unsigned int n_stages = tableau.n_stages();
     const unsigned int n_bodies = system.bodies().size();

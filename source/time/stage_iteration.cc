@@ -152,7 +152,7 @@ namespace ACF
 
 
   bool
-  StageIteration::prepare(const StageEquations &equations, StepReport &report)
+  StageIteration::prepare(StageEquations &equations, StepReport &report)
   {
     rotations = equations.rotations();
     std::vector<LowRankChange> changes;
@@ -216,6 +216,7 @@ namespace ACF
               add(increment[i][b], equations.increments[i][b]);
             equations.multipliers[i] += constraints[i];
           }
+        equations.increments_have_changed();
       }
   }
 
@@ -294,6 +295,7 @@ namespace ACF
               add(increment[i][b], equations.increments[i][b]);
             equations.multipliers[i] += constraint_increment[i];
           }
+        equations.increments_have_changed();
         if (report.converged)
           {
             first_iteration.end_step(norms);
@@ -454,8 +456,7 @@ namespace ACF
 
 
   void
-  StageIteration::refresh_factors(const StageEquations &equations,
-                                  StepReport &report)
+  StageIteration::refresh_factors(StageEquations &equations, StepReport &report)
   {
     std::vector<const Body *> refreshed;
     for (unsigned int b = 0; b < marked.size(); ++b)

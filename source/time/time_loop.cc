@@ -209,7 +209,10 @@ namespace ACF
         return false;
       }
 
-    stepper.accept(present);
+    {
+      const PhaseTimer timer(statistics, "time steps");
+      stepper.accept(present);
+    }
     sizes.accept(report.local_error,
                  [&](const double size) { return stepper.has_factors(size); },
                  {1. * (statistics.real_solves + statistics.complex_solves -

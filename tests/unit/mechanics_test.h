@@ -8,6 +8,8 @@
 #include <acf/mechanics/mesh_generation.h>
 #include <acf/mechanics/rotation.h>
 
+#include <deal.II/base/multithread_info.h>
+
 #include <Eigen/Dense>
 
 #include <iostream>
@@ -24,6 +26,21 @@ namespace ACF::Testing
   {
     std::cout << "[ measured ] " << label << ": " << value << std::endl;
   }
+
+  /** Restores the number of threads. */
+  struct ThreadLimit
+  {
+    ThreadLimit()
+      : n_threads(MultithreadInfo::n_threads())
+    {}
+
+    ~ThreadLimit()
+    {
+      MultithreadInfo::set_thread_limit(n_threads);
+    }
+
+    const unsigned int n_threads;
+  };
 
   /** Random numbers that are the same in every run. */
   class Random

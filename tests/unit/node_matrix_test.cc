@@ -6,8 +6,6 @@
 #include <acf/base/parallel.h>
 #include <acf/mechanics/node_matrix.h>
 
-#include <deal.II/base/multithread_info.h>
-
 #include <cmath>
 
 #include <unit/mechanics_test.h>
@@ -110,21 +108,6 @@ namespace
         x[v][k] = std::sin(0.1 * k * (v + 1) + v);
     return x;
   }
-
-  // Restores the number of threads.
-  struct ThreadLimit
-  {
-    ThreadLimit()
-      : n_threads(MultithreadInfo::n_threads())
-    {}
-
-    ~ThreadLimit()
-    {
-      MultithreadInfo::set_thread_limit(n_threads);
-    }
-
-    const unsigned int n_threads;
-  };
 } // namespace
 
 TEST(NodeMatrix, ProductsWithSeveralVectorsAndThreads)
@@ -170,6 +153,75 @@ TEST(NodeMatrix, ProductsWithSeveralVectorsAndThreads)
   // sums of up to 27 products of numbers up to 1
   EXPECT_LT(error, 1e-14);
   report("products with node matrices", error);
+}
+
+// Windows on the nodes that some rows reach, which are smaller than the body,
+// and against the sum over all entries.
+TEST(NodeMatrix, RowsAndQuadraticForms)
+{
+  const ThreadLimit threads;
+  double error = 0, form_error = 0;
+  for (const unsigned int n_nodes : {1, 30, 9001})
+    {
+      const auto graph = make_graph(n_nodes);
+      EXPECT_EQ(graph->bandwidth,
+                n_nodes == 1 ? 1 : (n_nodes == 30 ? 18 : 3001));
+      const Matrices matrices(graph);
+      const auto x = test_vectors(3, dim * n_nodes);
+      for (const bool with_blocks : {true, false})
+        {
+          std::vector<NodalVector> expected;
+          for (const NodalVector &vector : x)
+            expected.push_back(product(*graph, vector, with_blocks));
+          for (const unsigned int n_threads : {1, 2})
+            {
+              MultithreadInfo::set_thread_limit(n_threads);
+              const double form = with_blocks
+                                    ? matrices.blocks.quadratic_form(x[0])
+                                    : matrices.scalars.quadratic_form(x[0]);
+              form_error =
+                std::max(form_error,
+                         std::abs(form - x[0] * expected[0]) / n_nodes);
+            }
+          for (unsigned int n_vectors = 1; n_vectors <= 3; ++n_vectors)
+            {
+              constexpr unsigned int size = 4096, n_rows = 700;
+              NodeLanes source, sum;
+              source.resize(size, n_vectors);
+              sum.resize(size, n_vectors);
+              std::size_t reach = 0;
+              for (unsigned int begin = 0; begin < n_nodes; begin += n_rows)
+                {
+                  const unsigned int end = std::min(begin + n_rows, n_nodes);
+                  const RowRange rows{begin, end, reach};
+                  for (; reach < graph->reach(begin, end); ++reach)
+                    for (unsigned int v = 0; v < n_vectors; ++v)
+                      {
+                        double *const place =
+                          source.data() + 4 * (n_vectors * (reach % size) + v);
+                        store_lanes(load_three(x[v].begin() + dim * reach),
+                                    place);
+                      }
+                  if (with_blocks)
+                    matrices.blocks.add_rows(rows, sum, source);
+                  else
+                    matrices.scalars.add_rows(rows, sum, source);
+                  for (unsigned int a = begin; a < end; ++a)
+                    for (unsigned int v = 0; v < n_vectors; ++v)
+                      for (unsigned int i = 0; i < dim; ++i)
+                        error = std::max(
+                          error,
+                          std::abs(
+                            sum.data()[4 * (n_vectors * (a % size) + v) + i] -
+                            expected[v][dim * a + i]));
+                }
+            }
+        }
+    }
+  EXPECT_LT(error, 1e-14);
+  EXPECT_LT(form_error, 1e-14);
+  report("rows of products with node matrices", error);
+  report("quadratic forms, for each node", form_error);
 }
 
 TEST(NodeMatrix, BlocksAndRowSums)

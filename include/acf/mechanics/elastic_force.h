@@ -30,6 +30,10 @@ namespace ACF
                 NodalVector &force,
                 NodalVector &scratch);
 
+  /** The energy of elastic_force(), J. */
+  std::optional<double>
+  elastic_energy(const Body &body, const NodalVector &positions);
+
   /**
    * Elastic force with Rayleigh damping, see damped_reduced_strain_force(): the
    * damping is that of the small strain in the frame of the body for either

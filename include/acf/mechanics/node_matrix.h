@@ -65,9 +65,29 @@ namespace ACF
       return column[row_start[row + 1] - 1];
     }
 
+    /** The first node behind all that these rows have entries for; at least
+     * @p end. */
+    std::size_t
+    reach(const std::size_t begin, const std::size_t end) const;
+
+    /** Nodes from a row to the reach of it and all rows before, at most. */
+    unsigned int bandwidth = 0;
+
     /** Bytes held. */
     std::size_t
     memory_consumption() const;
+  };
+
+
+
+  /** Rows of a product that is made from the first row to the last. */
+  struct RowRange
+  {
+    std::size_t begin, end;
+
+    /** What NodeGraph::reach() was for the rows before; begin for the first
+     * ones. */
+    std::size_t reach;
   };
 
 
@@ -95,9 +115,22 @@ namespace ACF
     vmult(const std::vector<NodalVector *> &y,
           const std::vector<const NodalVector *> &x) const;
 
-    /** @param[out] y is resized; its fourth numbers mean nothing */
+    /**
+     * Adds to y what the entries of some rows contribute, the transposed ones
+     * included: after them all $y_a$ of these rows are complete as far as the
+     * rows before belong to the same product, and those from there to the reach
+     * are on the way. New nodes of y become zero when they are reached.
+     *
+     * x and y are windows on the nodes that are in use: node a is at its number
+     * modulo their size, a power of two that is at least the number of rows
+     * plus the bandwidth. The fourth numbers of y mean nothing.
+     */
     void
-    vmult(NodeLanes &y, const NodeLanes &x) const;
+    add_rows(const RowRange &rows, NodeLanes &y, const NodeLanes &x) const;
+
+    /** $x^T (m \otimes I_3) x$, without the product. */
+    double
+    quadratic_form(const NodalVector &x) const;
 
     /** Row sums $\sum_b m_{ab}$, size n_nodes. */
     std::vector<double>
@@ -175,9 +208,13 @@ namespace ACF
     vmult(const std::vector<NodalVector *> &y,
           const std::vector<const NodalVector *> &x) const;
 
-    /** @param[out] y is resized; its fourth numbers mean nothing */
+    /** $x^T A x$, without the product. */
+    double
+    quadratic_form(const NodalVector &x) const;
+
+    /** See ScalarNodeMatrix::add_rows(). */
     void
-    vmult(NodeLanes &y, const NodeLanes &x) const;
+    add_rows(const RowRange &rows, NodeLanes &y, const NodeLanes &x) const;
 
     const NodeGraph &
     graph() const

@@ -46,6 +46,12 @@ namespace ACF
   NodalMoments
   nodal_moments(const BodyOperators &body, const NodalVector &field);
 
+  /** Those of several fields, for which the sums' weights are read once for up
+   * to three. */
+  std::vector<NodalMoments>
+  nodal_moments(const BodyOperators &body,
+                const std::vector<const NodalVector *> &fields);
+
   /** Those of x + factor y. */
   NodalMoments
   add(const NodalMoments &x, const double factor, const NodalMoments &y);
@@ -61,16 +67,15 @@ namespace ACF
 
   /**
    * Angular velocity $R \dot\varphi$ of the frame of a body in the world,
-   * rad/s,
-   * $\dot\varphi_i = \Lambda_{ijk} H_{jk}$, $H = R^T \sum_a v_a \otimes g_a$.
-   * See theory (7.1).
+   * rad/s, see frame_spin().
+   * @param gradient $\sum_a x_a \otimes g_a$
+   * @param velocity_gradient $\sum_a v_a \otimes g_a$, 1/s
    * @return nothing if the body is turned inside out
    */
   std::optional<Vector3>
-  body_spin(const BodyOperators &body,
-            const RotationMeasure measure,
-            const NodalVector &positions,
-            const NodalVector &velocities);
+  body_spin(const RotationMeasure measure,
+            const Matrix3 &gradient,
+            const Matrix3 &velocity_gradient);
 
   /**
    * Co-rotated displacement
@@ -128,6 +133,12 @@ namespace ACF
                        const NodalVector &positions,
                        NodalVector &force,
                        NodalVector &scratch);
+
+  /** W of reduced_strain_force(), J, without the force. */
+  std::optional<double>
+  reduced_strain_energy(const BodyOperators &body,
+                        const RotationMeasure measure,
+                        const NodalVector &positions);
 
   /**
    * The force of reduced_strain_force() with Rayleigh damping in the rotating

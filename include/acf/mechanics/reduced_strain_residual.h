@@ -53,23 +53,14 @@ namespace ACF
     }
   };
 
-  /** Work space of reduced_strain_residual(), for the next call. */
-  struct ReducedStrainWork
-  {
-    NodeLanes displacements, accelerations;
-    NodeLanes stiffness_products, mass_products;
-
-    /** With damping: $q + \beta \dot q$; $\dot q$ and $M \dot q$. */
-    NodeLanes strained, rates, momenta;
-  };
-
   /**
    * What is missing for the equilibrium of a body:
    * $r_i = M (g_i - a_i) - f(x_i, v_i)$ with the force f of
    * reduced_strain_force(), or of damped_reduced_strain_force(). Reads the
-   * matrices once for all times, the mass matrix twice with $\alpha$, and
-   * vectors as seldom as their dependencies let it. Does nothing for damping
-   * that there is not.
+   * matrices once for all times, the mass matrix twice with $\alpha$, a few
+   * rows at a time, so that displacements, accelerations and their products
+   * with the matrices stay in the caches until they are not needed any more.
+   * Does nothing for damping that there is not.
    * See theory (3.2), theory (7.2), theory (11.1).
    *
    * @param[out] residual $r_i$, N
@@ -79,8 +70,7 @@ namespace ACF
   reduced_strain_residual(const BodyOperators &body,
                           const RotationMeasure measure,
                           const NodalMotion &motion,
-                          const std::vector<NodalVector *> &residual,
-                          ReducedStrainWork &work);
+                          const std::vector<NodalVector *> &residual);
 } // namespace ACF
 
 #endif

@@ -86,7 +86,7 @@ namespace ACF
      * @throws SimulationError if the state at the start is turned inside out
      */
     StageRotations
-    rotations() const;
+    rotations();
 
     /**
      * U and B of the reduced strain at the start of the step in the frame of
@@ -114,6 +114,10 @@ namespace ACF
               StageTangent &tangent,
               std::string &failure) const;
 
+    /** Must be called when @p increments have been changed. */
+    void
+    increments_have_changed();
+
     /** Increments Z, m. */
     StageVector increments;
 
@@ -131,15 +135,13 @@ namespace ACF
                  const unsigned int body,
                  NodalVector &v) const;
 
+    /** Sums over $Z_i$ of all stages. */
+    const std::vector<NodalMoments> &
+    moments_of_increments(const unsigned int body);
+
     /** Sums over $U_i$. */
     NodalMoments
-    moments(const unsigned int stage, const unsigned int body) const;
-
-    /** The same with those of the increment of this stage. */
-    NodalMoments
-    moments(const unsigned int stage,
-            const unsigned int body,
-            const NodalMoments &of_increment) const;
+    moments(const unsigned int stage, const unsigned int body);
 
     /**
      * What a body and its loads alone give to the residual.
@@ -197,10 +199,13 @@ namespace ACF
     /** See start_moments(). */
     std::vector<NodalMoments> position_moments, velocity_moments;
 
+    /** Sums over the increments, of each body and stage; none for a body where
+     * they have not been needed yet. */
+    std::vector<std::vector<NodalMoments>> increment_moments;
+
     /** Work space of each body, as far as it is used. */
     struct Work
     {
-      ReducedStrainWork reduced;
       NodalVector position, velocity, scratch;
       std::vector<NodalVector> accelerations, inertia;
     };

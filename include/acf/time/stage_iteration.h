@@ -162,7 +162,7 @@ namespace ACF
      * @return false, and why, if a matrix is singular
      */
     bool
-    prepare(const StageEquations &equations, StepReport &report);
+    prepare(StageEquations &equations, StepReport &report);
 
     /**
      * Solves the linear system of an iteration.
@@ -219,7 +219,7 @@ namespace ACF
     /** Makes the tangents of the prediction the matrices of marked bodies, or
      * restores the old ones if these cannot be factorised. */
     void
-    refresh_factors(const StageEquations &equations, StepReport &report);
+    refresh_factors(StageEquations &equations, StepReport &report);
 
     /** Corrects the positions of converged stages until constraints hold up to
      * round-off, without solves of bodies. */
