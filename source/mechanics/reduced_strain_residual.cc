@@ -75,7 +75,7 @@ namespace ACF
     };
 
     // Rows of the matrices at once.
-    constexpr std::size_t n_rows = 64;
+    constexpr std::size_t n_rows = 256;
 
     thread_local Windows windows;
 

@@ -334,13 +334,15 @@ namespace ACF
     void
     write(Number *const vectors)
     {
+      // in the order of the vectors: reads from all over the memory overlap
+      // more than writes
       const std::size_t n = tree.n_unknowns();
       for (unsigned int v = 0; v < n_vectors; ++v)
-        for (std::size_t place = 0; place < n / dim; ++place)
+        for (std::size_t a = 0; a < n / dim; ++a)
           {
-            Number *const value = vectors + v * n + dim * tree.node()[place];
+            Number *const value = vectors + v * n + dim * a;
             const Real *const node =
-              x.data() + place * node_size + v * planes * quad;
+              x.data() + tree.place()[a] * node_size + v * planes * quad;
             for (unsigned int p = 0; p < planes; ++p)
               for (unsigned int i = 0; i < dim; ++i)
                 plane(value[i], p) = scales[v] * node[p * quad + i];
