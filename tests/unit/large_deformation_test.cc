@@ -130,6 +130,7 @@ TEST(StageTangent, AgainstDifferencesOfTheResidual)
                 }
               equations.multipliers[i] = start_multipliers[i] + h * lambda[i];
             }
+          equations.increments_have_changed();
           StageVector r(z);
           StageConstraints g(lambda);
           std::string failure;
