@@ -201,10 +201,10 @@ namespace ACF
 
 
 
-    // Adds sum_a q_a x k_a, and with forces alpha d there
+    // Adds sum_a q_a x k_a, and with momenta d, if there are any,
     // alpha sum_a (q_a + X_a) x d_a, of the nodes from begin to end; forces
     // become -R (k_a + alpha d_a) - m_a.
-    template <unsigned int n, bool has_drag>
+    template <unsigned int n>
     struct CollectForces
     {
       ACF_INLINE void
@@ -223,7 +223,7 @@ namespace ACF
                 const Four q_a          = load_lanes<Four>(q + place);
                 Four k_a                = load_lanes<Four>(k + place);
                 sum[i] += cross_product(q_a, k_a);
-                if (has_drag)
+                if (d != nullptr)
                   {
                     const Four d_a = drag_factor * load_lanes<Four>(d + place);
                     sum[i] += cross_product(q_a + load_three(X + dim * a) -
@@ -255,19 +255,19 @@ namespace ACF
 
 
 
-    template <unsigned int n, bool has_drag>
-    CollectForces<n, has_drag>
+    template <unsigned int n>
+    CollectForces<n>
     collect_forces(const BodyOperators &body,
                    const NodalMotion &motion,
                    const std::vector<BodyRotation> &frames,
                    const std::vector<NodalVector *> &forces)
     {
-      CollectForces<n, has_drag> collect{};
+      CollectForces<n> collect{};
       collect.mask = windows.displacements.n_nodes() - 1;
       collect.q    = windows.displacements.data();
       collect.k    = windows.stiffness_products.data();
       collect.m    = windows.mass_products.data();
-      if (has_drag)
+      if (motion.mass_damping != 0)
         collect.d = windows.momenta.data();
       collect.X                = body.reference_positions.begin();
       collect.reference_centre = lanes_of(body.centre);
@@ -319,25 +319,8 @@ namespace ACF
 
       double moments[4 * n] = {};
       auto fill             = fill_windows<n, is_damped>(body, motion, frames);
-      auto collect = collect_forces<n, false>(body, motion, frames, forces);
-      auto collect_with_drag =
-        collect_forces<n, true>(body, motion, frames, forces);
-      collect.moments = collect_with_drag.moments = moments;
-      const auto collect_nodes                    = [&](const std::size_t first,
-                                     const std::size_t last) {
-        if (has_drag)
-          {
-            collect_with_drag.begin = first;
-            collect_with_drag.end   = last;
-            run_vectorized(collect_with_drag);
-          }
-        else
-          {
-            collect.begin = first;
-            collect.end   = last;
-            run_vectorized(collect);
-          }
-      };
+      auto collect          = collect_forces<n>(body, motion, frames, forces);
+      collect.moments       = moments;
 
       fill.end = begin;
       for (std::size_t first = begin; first < end; first += n_rows)
@@ -356,7 +339,9 @@ namespace ACF
                                     windows.accelerations);
           if (has_drag)
             body.mass_matrix.add_rows(rows, windows.momenta, windows.rates);
-          collect_nodes(first, last);
+          collect.begin = first;
+          collect.end   = last;
+          run_vectorized(collect);
         }
 
       Part part;
@@ -364,11 +349,12 @@ namespace ACF
       for (unsigned int i = 0; i < n; ++i)
         {
           part.rest[i].reinit(dim * (fill.end - end));
-          collect.forces[i] = collect_with_drag.forces[i] =
-            part.rest[i].begin();
+          collect.forces[i] = part.rest[i].begin();
         }
-      collect.first_force = collect_with_drag.first_force = end;
-      collect_nodes(end, fill.end);
+      collect.first_force = end;
+      collect.begin       = end;
+      collect.end         = fill.end;
+      run_vectorized(collect);
       for (unsigned int i = 0; i < n; ++i)
         part.moments.emplace_back(
           Vector3({moments[4 * i], moments[4 * i + 1], moments[4 * i + 2]}));

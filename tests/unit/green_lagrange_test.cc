@@ -4,8 +4,6 @@
 #include <acf/base/parallel.h>
 #include <acf/mechanics/green_lagrange.h>
 
-#include <deal.II/base/multithread_info.h>
-
 #include <cmath>
 
 #include <unit/reduced_strain_test.h>
@@ -222,13 +220,12 @@ TEST(GreenLagrange, ThreadsChangeNothing)
                                      {{8, 4, 3}},
                                      ReferenceCells::Tetrahedron));
   const GreenLagrangeOperator law(example.discretization, test_material());
-  const NodalVector x  = deformed(example, random);
-  const auto n_threads = MultithreadInfo::n_threads();
+  const NodalVector x = deformed(example, random);
+  const ThreadLimit threads;
   MultithreadInfo::set_thread_limit(1);
   const NodalVector one = force_at(law, x);
   MultithreadInfo::set_thread_limit(2);
   const NodalVector two = force_at(law, x);
-  MultithreadInfo::set_thread_limit(n_threads);
   EXPECT_EQ(one, two);
 }
 
@@ -251,12 +248,11 @@ TEST(GreenLagrange, CallsAtTheSameTimeDoNotMeet)
       alone.push_back(force_at(law, positions.back()));
       together.emplace_back(positions.back().size());
     }
-  const auto n_threads = MultithreadInfo::n_threads();
+  const ThreadLimit threads;
   MultithreadInfo::set_thread_limit(2);
   run_tasks(n_calls, [&](const unsigned int k) {
     law.force(positions[k], together[k]);
   });
-  MultithreadInfo::set_thread_limit(n_threads);
   for (unsigned int k = 0; k < n_calls; ++k)
     EXPECT_EQ(alone[k], together[k]) << "call " << k;
 }
