@@ -2,16 +2,9 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/huge_pages.h>
-#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
-#include <acf/solvers/supernodal_factor.h>
 
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-
-#include "supernodal_kernels.h"
+#include "supernodal_solution.h"
 
 namespace ACF
 {
@@ -22,73 +15,6 @@ namespace ACF
 
 
 
-    template <typename Number>
-    constexpr unsigned int n_planes = sizeof(Number) / sizeof(double);
-
-
-
-    // Real or imaginary part of a number.
-    double &
-    plane(double &x, const unsigned int)
-    {
-      return x;
-    }
-
-    double &
-    plane(std::complex<double> &x, const unsigned int p)
-    {
-      return reinterpret_cast<double(&)[2]>(x)[p];
-    }
-
-
-
-    // One function per direction and instruction set.
-#define ACF_SOLVES(name, attributes)                                     \
-  template <typename Real, unsigned int planes, unsigned int n_vectors>  \
-  attributes void forward_##name(const Kernels::SupernodeView<Real> &s,  \
-                                 const Kernels::Work<Real> &t)           \
-  {                                                                      \
-    Kernels::forward<Real, planes, n_vectors>(s, t);                     \
-  }                                                                      \
-  template <typename Real, unsigned int planes, unsigned int n_vectors>  \
-  attributes void backward_##name(const Kernels::SupernodeView<Real> &s, \
-                                  const Kernels::Work<Real> &t)          \
-  {                                                                      \
-    Kernels::backward<Real, planes, n_vectors>(s, t);                    \
-  }
-
-    ACF_SOLVES(any, )
-#if defined(__x86_64__)
-    ACF_SOLVES(avx2, ACF_AVX2)
-    ACF_SOLVES(avx512, ACF_AVX512)
-#endif
-#undef ACF_SOLVES
-
-    template <typename Real>
-    using Solve = void (*)(const Kernels::SupernodeView<Real> &,
-                           const Kernels::Work<Real> &);
-
-    template <typename Real, unsigned int planes, unsigned int n_vectors>
-    Solve<Real>
-    choose_solve(const bool forward)
-    {
-#if defined(__x86_64__)
-      if (present_processor() == Processor::avx512)
-        return forward ? forward_avx512<Real, planes, n_vectors>
-                       : backward_avx512<Real, planes, n_vectors>;
-      if (present_processor() == Processor::avx2)
-        return forward ? forward_avx2<Real, planes, n_vectors>
-                       : backward_avx2<Real, planes, n_vectors>;
-#endif
-      return forward ? forward_any<Real, planes, n_vectors>
-                     : backward_any<Real, planes, n_vectors>;
-    }
-  } // namespace
-
-
-
-  namespace
-  {
     std::size_t
     n_values(const EliminationTree::Supernode &supernode,
              const unsigned int planes)
@@ -124,6 +50,7 @@ namespace ACF
     const std::shared_ptr<const EliminationTree> &tree,
     const unsigned int n_threads)
     : tree(tree)
+    , n_threads(n_threads)
   {
     std::size_t n = 0;
     for (const EliminationTree::Supernode &supernode : tree->supernodes())
@@ -205,301 +132,52 @@ namespace ACF
 
 
 
-  namespace
-  {
-    // The components of a node and one number more, which means nothing.
-    template <typename Real>
-    struct Quads;
-
-    template <>
-    struct Quads<double>
-    {
-      typedef double type __attribute__((vector_size(32)));
-      typedef long long mask __attribute__((vector_size(32)));
-    };
-
-    template <>
-    struct Quads<float>
-    {
-      typedef float type __attribute__((vector_size(16)));
-      typedef int mask __attribute__((vector_size(16)));
-    };
-
-    constexpr unsigned int quad = 4;
-
-    template <typename Real>
-    ACF_INLINE typename Quads<Real>::type
-    load_quad(const Real *const p)
-    {
-      return load_lanes<typename Quads<Real>::type>(p);
-    }
-
-    // With zero as fourth number.
-    template <typename Real>
-    ACF_INLINE typename Quads<Real>::type
-    load_components(const Real *const p)
-    {
-      const typename Quads<Real>::mask is_component = {-1, -1, -1, 0};
-      return is_component ? load_quad(p) : typename Quads<Real>::type{};
-    }
-
-
-
-    // The largest absolute value of n numbers.
-    struct LargestValue
-    {
-      ACF_INLINE void
-      operator()() const
-      {
-        Eight largest = {};
-        std::size_t k = 0;
-        for (; k + 8 <= n; k += 8)
-          {
-            const Eight value = load_lanes<Eight>(x + k);
-            const Eight size  = value < Eight{} ? -value : value;
-            largest           = size > largest ? size : largest;
-          }
-        for (unsigned int i = 0; i < 8; ++i)
-          result = largest[i] > result ? largest[i] : result;
-        for (; k < n; ++k)
-          {
-            const double size = x[k] < 0 ? -x[k] : x[k];
-            result            = size > result ? size : result;
-          }
-      }
-
-      const double *x;
-      std::size_t n;
-      double &result;
-    };
-  } // namespace
-
-
-
-  /**
-   * Solves with some right-hand sides at once, which it keeps in the order of
-   * elimination: x[place][vector and plane][component], with four numbers for
-   * the three components, so that a node is copied by few instructions. In
-   * single precision they are scaled to one, so that none is too small for it.
-   */
   template <typename Number, typename Real>
-  template <unsigned int n_vectors>
-  class SupernodalFactor<Number, Real>::Solution
+  Kernels::SupernodeView<Real>
+  SupernodalFactor<Number, Real>::view(const unsigned int s) const
   {
-  public:
-    explicit Solution(const SupernodalFactor &factor)
-      : factor(factor)
-      , tree(*factor.tree)
-      // a node that is copied to the last rows writes one number more
-      , longest(Kernels::round_up(factor.longest_block + 1))
-    {
-      x.resize_fast(node_size * (tree.n_unknowns() / dim));
-    }
-
-    void
-    read(Number *const vectors)
-    {
-      const std::size_t n = tree.n_unknowns();
-      for (unsigned int v = 0; v < n_vectors; ++v)
-        {
-          scales[v]            = 1;
-          double inverse_scale = 1;
-          if (std::is_same<Real, float>::value)
-            {
-              double size = 0;
-              run_vectorized(
-                LargestValue{&plane(vectors[v * n], 0), planes * n, size});
-              // the inverse of what is too small would be infinite
-              if (size >= std::numeric_limits<double>::min())
-                {
-                  scales[v]     = size;
-                  inverse_scale = 1 / size;
-                }
-            }
-          for (std::size_t place = 0; place < n / dim; ++place)
-            {
-              Number *const value = vectors + v * n + dim * tree.node()[place];
-              Real *const node =
-                x.data() + place * node_size + v * planes * quad;
-              for (unsigned int p = 0; p < planes; ++p)
-                {
-                  for (unsigned int i = 0; i < dim; ++i)
-                    node[p * quad + i] = plane(value[i], p) * inverse_scale;
-                  node[p * quad + dim] = 0;
-                }
-            }
-        }
-    }
-
-    void
-    write(Number *const vectors)
-    {
-      // in the order of the vectors: reads from all over the memory overlap
-      // more than writes
-      const std::size_t n = tree.n_unknowns();
-      for (unsigned int v = 0; v < n_vectors; ++v)
-        for (std::size_t a = 0; a < n / dim; ++a)
-          {
-            Number *const value = vectors + v * n + dim * a;
-            const Real *const node =
-              x.data() + tree.place()[a] * node_size + v * planes * quad;
-            for (unsigned int p = 0; p < planes; ++p)
-              for (unsigned int i = 0; i < dim; ++i)
-                plane(value[i], p) = scales[v] * node[p * quad + i];
-          }
-    }
-
-    void
-    solve()
-    {
-      const TreePartition &partition = factor.partition;
-      const unsigned int n_branches  = partition.branches.size();
-      // what branches but the first subtract above themselves
-      std::vector<std::vector<Real>> sums(n_branches);
-      run_tasks(n_branches, [&](const unsigned int branch) {
-        if (branch > 0)
-          sums[branch].resize(x.size());
-        forward(partition.branches[branch],
-                branch > 0 ? sums[branch].data() : x.data());
-      });
-      for (const unsigned int s : partition.top)
-        for (unsigned int branch = 1; branch < n_branches; ++branch)
-          {
-            const Block &block      = factor.blocks[s];
-            const std::size_t begin = block.first_place * node_size;
-            for (unsigned int k = 0; k < block.n_nodes * node_size; ++k)
-              x[begin + k] += sums[branch][begin + k];
-          }
-      forward(partition.top, x.data());
-      backward(partition.top);
-      run_tasks(n_branches, [&](const unsigned int branch) {
-        backward(partition.branches[branch]);
-      });
-    }
-
-  private:
-    static constexpr unsigned int planes    = n_planes<Number>;
-    static constexpr unsigned int n_x       = planes * n_vectors;
-    static constexpr unsigned int node_size = quad * n_x;
-
-    /**
-     * Rows are at [vector and plane][row] with the given distance. Their copy
-     * writes one number behind those of the node.
-     */
-    ACF_INLINE static void
-    read_node(const Real *x, Real *rows, const std::size_t distance)
-    {
-      ACF_UNROLL
-      for (unsigned int k = 0; k < n_x; ++k)
-        store_lanes(load_quad(x + k * quad), rows + k * distance);
-    }
-
-    ACF_INLINE static void
-    write_node(const Real *rows, const std::size_t distance, Real *x)
-    {
-      ACF_UNROLL
-      for (unsigned int k = 0; k < n_x; ++k)
-        store_lanes(load_components(rows + k * distance), x + k * quad);
-    }
-
-    ACF_INLINE static void
-    add_node(const Real *rows, const std::size_t distance, Real *x)
-    {
-      ACF_UNROLL
-      for (unsigned int k = 0; k < n_x; ++k)
-        add_lanes(load_components(rows + k * distance), x + k * quad);
-    }
-
-    Kernels::SupernodeView<Real>
-    view(const unsigned int s) const
-    {
-      const auto &blocks = factor.blocks;
-      const std::size_t end =
-        s + 1 < blocks.size() ? blocks[s + 1].offset : factor.values.size();
-      return {factor.values.data() + blocks[s].offset,
-              blocks[s].n_columns,
-              blocks[s].n_rows,
-              end - blocks[s].offset};
-    }
-
-    /** @param sums takes what belongs to rows above the branches */
-    void
-    forward(const std::vector<unsigned int> &supernodes, Real *const sums)
-    {
-      const Solve<Real> solve = choose_solve<Real, planes, n_vectors>(true);
-      dealii::AlignedVector<Real> work(longest * n_x);
-      for (const unsigned int s : supernodes)
-        {
-          const Block &block         = factor.blocks[s];
-          const std::size_t distance = Kernels::round_up(block.n_rows + 1);
-          Real *const rows           = work.data();
-          Real *const below          = rows + block.n_columns;
-          Real *const own            = x.data() + block.first_place * node_size;
-          const unsigned int *const place =
-            factor.places_below.data() + block.offset_below;
-          for (unsigned int k = 0; k < block.n_nodes; ++k)
-            read_node(own + k * node_size, rows + dim * k, distance);
-          for (unsigned int k = 0; k < n_x; ++k)
-            std::fill(below + k * distance, rows + (k + 1) * distance, Real(0));
-          solve(view(s), {rows, distance});
-          for (unsigned int k = 0; k < block.n_nodes; ++k)
-            write_node(rows + dim * k, distance, own + k * node_size);
-          for (unsigned int k = 0; k < block.n_own_below; ++k)
-            add_node(below + dim * k,
-                     distance,
-                     x.data() + place[k] * node_size);
-          for (unsigned int k = block.n_own_below; k < block.n_below; ++k)
-            add_node(below + dim * k, distance, sums + place[k] * node_size);
-        }
-    }
-
-    void
-    backward(const std::vector<unsigned int> &supernodes)
-    {
-      const Solve<Real> solve = choose_solve<Real, planes, n_vectors>(false);
-      dealii::AlignedVector<Real> work(longest * n_x);
-      for (unsigned int l = supernodes.size(); l-- > 0;)
-        {
-          const unsigned int s       = supernodes[l];
-          const Block &block         = factor.blocks[s];
-          const std::size_t distance = Kernels::round_up(block.n_rows + 1);
-          Real *const rows           = work.data();
-          Real *const own            = x.data() + block.first_place * node_size;
-          const unsigned int *const place =
-            factor.places_below.data() + block.offset_below;
-          for (unsigned int k = 0; k < block.n_nodes; ++k)
-            read_node(own + k * node_size, rows + dim * k, distance);
-          for (unsigned int k = 0; k < block.n_below; ++k)
-            read_node(x.data() + place[k] * node_size,
-                      rows + block.n_columns + dim * k,
-                      distance);
-          for (unsigned int k = 0; k < n_x; ++k)
-            std::fill(rows + k * distance + block.n_rows,
-                      rows + (k + 1) * distance,
-                      Real(0));
-          solve(view(s), {rows, distance});
-          for (unsigned int k = 0; k < block.n_nodes; ++k)
-            write_node(rows + dim * k, distance, own + k * node_size);
-        }
-    }
-
-    const SupernodalFactor &factor;
-    const EliminationTree &tree;
-    const std::size_t longest;
-    dealii::AlignedVector<Real> x;
-    std::array<double, n_vectors> scales;
-  };
+    const std::size_t end =
+      s + 1 < blocks.size() ? blocks[s + 1].offset : values.size();
+    return {values.data() + blocks[s].offset,
+            blocks[s].n_columns,
+            blocks[s].n_rows,
+            end - blocks[s].offset};
+  }
 
 
 
   template <typename Number, typename Real>
-  template <unsigned int n_vectors>
+  template <typename SomeSolution>
   void
   SupernodalFactor<Number, Real>::solve_together(Number *vectors) const
   {
-    Solution<n_vectors> solution(*this);
+    SomeSolution solution(*this);
+    auto &x                          = solution.x;
+    constexpr unsigned int node_size = SomeSolution::node_size;
     solution.read(vectors);
-    solution.solve();
+
+    const unsigned int n_branches = partition.branches.size();
+    // what branches but the first subtract above themselves
+    std::vector<dealii::AlignedVector<Real>> sums(n_branches);
+    run_tasks(n_branches, [&](const unsigned int branch) {
+      if (branch > 0)
+        sums[branch].resize(x.size());
+      solution.forward(partition.branches[branch],
+                       branch > 0 ? sums[branch].data() : x.data());
+    });
+    for (const unsigned int s : partition.top)
+      for (unsigned int branch = 1; branch < n_branches; ++branch)
+        {
+          const std::size_t begin = blocks[s].first_place * node_size;
+          for (unsigned int k = 0; k < blocks[s].n_nodes * node_size; ++k)
+            x[begin + k] += sums[branch][begin + k];
+        }
+    solution.forward(partition.top, x.data());
+    solution.backward(partition.top);
+    run_tasks(n_branches, [&](const unsigned int branch) {
+      solution.backward(partition.branches[branch]);
+    });
+
     solution.write(vectors);
   }
 
@@ -510,30 +188,44 @@ namespace ACF
   SupernodalFactor<Number, Real>::solve(Number *vectors,
                                         const unsigned int n_vectors) const
   {
-    // four at a time; small factors have no branches for threads
-    constexpr unsigned int largest = 4;
-    const std::size_t n            = tree->n_unknowns();
-    const auto solve_some          = [&](const unsigned int block) {
-      const unsigned int first = largest * block;
-      Number *const some       = vectors + first * n;
-      switch (std::min(largest, n_vectors - first))
+    const std::size_t n   = tree->n_unknowns();
+    const auto solve_some = [&](const unsigned int first,
+                                const unsigned int n_some) {
+      Number *const some = vectors + first * n;
+      switch (n_some)
         {
-          case 4:
-            return solve_together<4>(some);
-          case 3:
-            return solve_together<3>(some);
+          case 1:
+            return solve_together<Solution<1>>(some);
           case 2:
-            return solve_together<2>(some);
+            return solve_together<Solution<2>>(some);
+          case 3:
+            return solve_together<Solution<3>>(some);
+          case 4:
+            return solve_together<Solution<4>>(some);
           default:
-            return solve_together<1>(some);
+            return solve_together<InterleavedSolution>(some);
         }
     };
-    const unsigned int n_blocks = (n_vectors + largest - 1) / largest;
-    if (partition.branches.size() == 1)
-      run_tasks(n_blocks, solve_some);
-    else
+
+    // As many as possible together, but something for all threads of small
+    // factors, which have no branches for them.
+    const bool has_branches      = partition.branches.size() > 1;
+    const unsigned int n_in_turn = has_branches ? 1 : n_threads;
+    constexpr unsigned int many = InterleavedSolution::n_vectors, few = 4;
+    const unsigned int n_by_many = n_vectors / (many * n_in_turn) * n_in_turn;
+    const unsigned int n_left    = n_vectors - many * n_by_many;
+    const auto solve_block       = [&](const unsigned int block) {
+      if (block < n_by_many)
+        return solve_some(many * block, many);
+      const unsigned int first = few * (block - n_by_many);
+      solve_some(many * n_by_many + first, std::min(few, n_left - first));
+    };
+    const unsigned int n_blocks = n_by_many + (n_left + few - 1) / few;
+    if (has_branches)
       for (unsigned int block = 0; block < n_blocks; ++block)
-        solve_some(block);
+        solve_block(block);
+    else
+      run_tasks(n_blocks, solve_block);
   }
 
 

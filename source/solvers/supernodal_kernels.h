@@ -160,11 +160,15 @@ namespace ACF
 
 
 
-    // The right-hand sides of the columns of a panel.
-    template <typename Real, unsigned int n_planes, unsigned int width>
+    // The right-hand sides of the columns of a panel. X: Real, or a vector of
+    // numbers of several right-hand sides.
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int width,
+              typename X = Real>
     struct PanelColumns
     {
-      Real x[width][n_planes];
+      X x[width][n_planes];
 
       ACF_INLINE void
       read(const Work<Real> &t, const unsigned int v, const unsigned int j)

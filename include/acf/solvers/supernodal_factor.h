@@ -13,17 +13,24 @@
 
 namespace ACF
 {
+  namespace Kernels
+  {
+    template <typename Real>
+    struct SupernodeView;
+  }
+
   /**
    * The factor $L D L^T$ of a symmetric matrix, laid out for solves, which are
    * bound by the bandwidth of the memory: each solve reads L twice, in one
-   * stream from its first to its last byte and in one back, whatever the number
-   * of right-hand sides up to four.
+   * stream from its first to its last byte and in one back, for one to four
+   * right-hand sides or for eight.
    *
    * The columns of a supernode are cut into panels of a few columns, these into
    * blocks of eight rows, with real and imaginary parts apart, so that the
-   * inner loops are products of vectors of eight numbers. Independent branches
-   * of the tree are solved in parallel; sums do not depend on which thread is
-   * faster, only on their number.
+   * inner loops are products of vectors of eight numbers: rows, or right-hand
+   * sides if there are eight, which takes fewer instructions. Independent
+   * branches of the tree are solved in parallel; sums do not depend on which
+   * thread is faster, only on their number.
    *
    * @tparam Number double or std::complex<double>, of vectors
    * @tparam Real double or float, in which L is kept and solves are done
@@ -92,11 +99,17 @@ namespace ACF
     template <unsigned int n_vectors>
     class Solution;
 
-    template <unsigned int n_vectors>
+    class InterleavedSolution;
+
+    Kernels::SupernodeView<Real>
+    view(const unsigned int supernode) const;
+
+    template <typename SomeSolution>
     void
     solve_together(Number *vectors) const;
 
     std::shared_ptr<const EliminationTree> tree;
+    const unsigned int n_threads;
     std::vector<Block> blocks;
 
     /** The rows below of all supernodes in one array, which is read in order.
