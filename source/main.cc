@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/console.h>
+#include <acf/base/huge_pages.h>
 #include <acf/base/input_problems.h>
 #include <acf/base/interruption.h>
 #include <acf/simulation.h>
@@ -54,6 +55,7 @@ int
 main(int argc, char **argv)
 {
   ACF::ignore_signals_of_writes();
+  ACF::keep_heap_in_huge_pages();
   try
     {
       ACF::run_command(ACF::parse_command_line({argv + 1, argv + argc}),

@@ -37,72 +37,20 @@ namespace ACF
 
 
 
-    // Numbers of x that stay in the first-level cache.
-    constexpr std::size_t block_size = 1024;
-
-    // Sums of the products with vectors y.
-    struct AddProducts
+    struct AddProduct
     {
       ACF_INLINE void
       operator()() const
       {
-        for (std::size_t first = begin; first < end; first += block_size)
-          {
-            const std::size_t last =
-              first + block_size < end ? first + block_size : end;
-            for (std::size_t k = 0; k < n_vectors; ++k)
-              sums[k] += multiply_and_add(x, y[k], first, last);
-          }
+        sum += multiply_and_add(x, y, begin, end);
       }
 
       const double *x;
-      const double *const *y;
-      std::size_t n_vectors;
+      const double *y;
       std::size_t begin, end;
-      double *sums;
-    };
-
-    // that sum_ranges() adds up
-    struct Sums
-    {
-      Sums &
-      operator+=(const Sums &other)
-      {
-        for (std::size_t k = 0; k < values.size(); ++k)
-          values[k] += other.values[k];
-        return *this;
-      }
-
-      std::vector<double> values;
+      double &sum;
     };
   } // namespace
-
-
-
-  std::vector<double>
-  dot_products(const NodalVector &x, const std::vector<const NodalVector *> &y)
-  {
-    std::vector<const double *> vectors;
-    for (const NodalVector *const vector : y)
-      {
-        AssertDimension(x.size(), vector->size());
-        vectors.push_back(vector->begin());
-      }
-    return sum_ranges<Sums>(x.size(),
-                            [&](const std::size_t begin,
-                                const std::size_t end) {
-                              Sums sums;
-                              sums.values.resize(y.size());
-                              run_vectorized(AddProducts{x.begin(),
-                                                         vectors.data(),
-                                                         y.size(),
-                                                         begin,
-                                                         end,
-                                                         sums.values.data()});
-                              return sums;
-                            })
-      .values;
-  }
 
 
 
@@ -112,9 +60,8 @@ namespace ACF
     AssertDimension(x.size(), y.size());
     return sum_ranges<double>(
       x.size(), [&](const std::size_t begin, const std::size_t end) {
-        double sum           = 0;
-        const double *vector = y.begin();
-        run_vectorized(AddProducts{x.begin(), &vector, 1, begin, end, &sum});
+        double sum = 0;
+        run_vectorized(AddProduct{x.begin(), y.begin(), begin, end, sum});
         return sum;
       });
   }

@@ -3,9 +3,17 @@
 
 #include <acf/base/huge_pages.h>
 
+#include <unistd.h>
+
+#include <algorithm>
 #include <cstdint>
+#include <cstdlib>
+#include <limits>
 
 #include <sys/mman.h>
+#if defined(__GLIBC__)
+#  include <malloc.h>
+#endif
 
 namespace ACF
 {
@@ -23,6 +31,36 @@ namespace ACF
 #else
     static_cast<void>(begin);
     static_cast<void>(size);
+#endif
+  }
+
+
+
+  void
+  keep_heap_in_huge_pages()
+  {
+#if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
+    constexpr std::size_t most = std::size_t(1) << 30;
+    const std::size_t memory =
+      static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+    const std::size_t size = std::min(most, memory / 8);
+
+    // What is larger than this has pages of its own, and is advised by those
+    // who allocate it. What is freed stays with the heap.
+    constexpr int largest_in_heap = 1 << 25;
+    mallopt(M_MMAP_THRESHOLD, largest_in_heap);
+    mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
+
+    // The heap grows by more than is asked for, this once.
+    constexpr int usual_growth = 1 << 17;
+    char *const old_end        = static_cast<char *>(sbrk(0));
+    mallopt(M_TOP_PAD, static_cast<int>(size));
+    void *volatile some = std::malloc(mallinfo2().keepcost + 1);
+    std::free(some);
+    mallopt(M_TOP_PAD, usual_growth);
+    char *const new_end = static_cast<char *>(sbrk(0));
+    if (new_end > old_end)
+      advise_huge_pages(old_end, new_end - old_end);
 #endif
   }
 } // namespace ACF

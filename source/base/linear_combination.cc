@@ -6,98 +6,222 @@
 #include <acf/base/parallel.h>
 #include <acf/base/processor.h>
 
-#include <algorithm>
-
 namespace ACF
 {
   namespace
   {
-    // Numbers that stay in the first-level cache.
-    constexpr std::size_t block_size = 512;
-
-
-
-    // y = c_1 x_1 + c_2 x_2, or with another number of terms.
-    template <unsigned int n>
-    ACF_INLINE void
-    combine(const double *const c,
-            const double *const *const x,
-            const std::size_t begin,
-            const std::size_t end,
-            double *const y)
+    // What loops read of terms.
+    struct Terms
     {
-      std::size_t i = begin;
-      for (; i + 8 <= end; i += 8)
-        {
-          Eight sum = c[0] * load_lanes<Eight>(x[0] + i);
-          for (unsigned int k = 1; k < n; ++k)
-            sum += c[k] * load_lanes<Eight>(x[k] + i);
-          store_lanes(sum, y + i);
-        }
-      for (; i < end; ++i)
-        {
-          double sum = c[0] * x[0][i];
-          for (unsigned int k = 1; k < n; ++k)
-            sum += c[k] * x[k][i];
-          y[i] = sum;
-        }
+      explicit Terms(const std::vector<ScaledVector> &terms)
+      {
+        for (const ScaledVector &term : terms)
+          {
+            AssertDimension(term.vector->size(), terms[0].vector->size());
+            c.push_back(term.factor);
+            x.push_back(term.vector->begin());
+          }
+      }
+
+      std::vector<double> c;
+      std::vector<const double *> x;
+    };
+
+
+
+    // The numbers of a linear combination. All terms are read at once, so that
+    // they do not wait for the memory one after the other.
+    struct Combination
+    {
+      explicit Combination(const Terms &terms)
+        : n_terms(terms.c.size())
+        , c(terms.c.data())
+        , x(terms.x.data())
+      {}
+
+      ACF_INLINE void
+      sixteen(const std::size_t i, Eight &first, Eight &second) const
+      {
+        first  = c[0] * load_lanes<Eight>(x[0] + i);
+        second = c[0] * load_lanes<Eight>(x[0] + i + 8);
+        for (std::size_t k = 1; k < n_terms; ++k)
+          {
+            first += c[k] * load_lanes<Eight>(x[k] + i);
+            second += c[k] * load_lanes<Eight>(x[k] + i + 8);
+          }
+      }
+
+      ACF_INLINE double
+      one(const std::size_t i) const
+      {
+        double sum = c[0] * x[0][i];
+        for (std::size_t k = 1; k < n_terms; ++k)
+          sum += c[k] * x[k][i];
+        return sum;
+      }
+
+      std::size_t n_terms;
+      const double *c;
+      const double *const *x;
+    };
+
+
+
+    ACF_INLINE double
+    sum_of(const Eight &x)
+    {
+      double sum = 0;
+      for (unsigned int lane = 0; lane < 8; ++lane)
+        sum += x[lane];
+      return sum;
     }
 
 
 
-    // Three terms at once, the sum of those before being one of them.
-    ACF_INLINE void
-    combine_all(const unsigned int n_terms,
-                const double *const c,
-                const double *const *const x,
-                const std::size_t begin,
-                const std::size_t end,
-                double *const y)
+    struct Store
     {
-      for (std::size_t first = begin; first < end; first += block_size)
-        {
-          const std::size_t last = std::min(first + block_size, end);
-          unsigned int done      = std::min(n_terms, 3U);
-          if (done == 1)
-            combine<1>(c, x, first, last, y);
-          else if (done == 2)
-            combine<2>(c, x, first, last, y);
-          else
-            combine<3>(c, x, first, last, y);
-          while (done < n_terms)
-            {
-              const bool two           = done + 1 < n_terms;
-              const double factors[3]  = {1, c[done], two ? c[done + 1] : 0};
-              const double *vectors[3] = {y, x[done], two ? x[done + 1] : y};
-              if (two)
-                combine<3>(factors, vectors, first, last, y);
-              else
-                combine<2>(factors, vectors, first, last, y);
-              done += two ? 2 : 1;
-            }
-        }
+      ACF_INLINE void
+      operator()() const
+      {
+        std::size_t i = begin;
+        for (; i + 16 <= end; i += 16)
+          {
+            Eight first, second;
+            combination.sixteen(i, first, second);
+            store_lanes(first, y + i);
+            store_lanes(second, y + i + 8);
+          }
+        for (; i < end; ++i)
+          y[i] = combination.one(i);
+      }
+
+      Combination combination;
+      double *y;
+      std::size_t begin, end;
+    };
+
+
+
+    // Adds the square of the combination.
+    struct AddSquare
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        Eight squares[2] = {};
+        std::size_t i    = begin;
+        for (; i + 16 <= end; i += 16)
+          {
+            Eight first, second;
+            combination.sixteen(i, first, second);
+            squares[0] += first * first;
+            squares[1] += second * second;
+          }
+        total += sum_of(squares[0] + squares[1]);
+        for (; i < end; ++i)
+          {
+            const double y = combination.one(i);
+            total += y * y;
+          }
+      }
+
+      Combination combination;
+      std::size_t begin, end;
+      double &total;
+    };
+
+
+
+    // Stores the combination, and adds its products with itself and with some
+    // vectors.
+    template <unsigned int n_vectors>
+    struct StoreAndMultiply
+    {
+      ACF_INLINE void
+      operator()() const
+      {
+        Eight sums[n_vectors + 1] = {};
+        std::size_t i             = begin;
+        for (; i + 16 <= end; i += 16)
+          {
+            Eight first, second;
+            combination.sixteen(i, first, second);
+            store_lanes(first, y + i);
+            store_lanes(second, y + i + 8);
+            sums[0] += first * first + second * second;
+            ACF_UNROLL
+            for (unsigned int k = 0; k < n_vectors; ++k)
+              sums[k + 1] += first * load_lanes<Eight>(z[k] + i) +
+                             second * load_lanes<Eight>(z[k] + i + 8);
+          }
+        for (unsigned int k = 0; k <= n_vectors; ++k)
+          products[k] += sum_of(sums[k]);
+        for (; i < end; ++i)
+          {
+            y[i] = combination.one(i);
+            products[0] += y[i] * y[i];
+            for (unsigned int k = 0; k < n_vectors; ++k)
+              products[k + 1] += y[i] * z[k][i];
+          }
+      }
+
+      Combination combination;
+      double *y;
+      const double *const *z;
+      std::size_t begin, end;
+      double *products;
+    };
+
+
+
+    // that sum_ranges() adds up
+    struct Sums
+    {
+      Sums &
+      operator+=(const Sums &other)
+      {
+        for (std::size_t k = 0; k < values.size(); ++k)
+          values[k] += other.values[k];
+        return *this;
+      }
+
+      std::vector<double> values;
+    };
+
+
+
+    void
+    set_size(const std::vector<ScaledVector> &terms, NodalVector &y)
+    {
+      const std::size_t n = terms.front().vector->size();
+      if (y.size() != n)
+        y.reinit(n, true);
     }
 
 
 
-    // One function per instruction set.
-#define ACF_COMBINATIONS(name, attributes)                     \
-  attributes void combine_##name(const unsigned int n_terms,   \
-                                 const double *const c,        \
-                                 const double *const *const x, \
-                                 const std::size_t begin,      \
-                                 const std::size_t end,        \
-                                 double *const y)              \
-  {                                                            \
-    combine_all(n_terms, c, x, begin, end, y);                 \
-  }
-
-    ACF_COMBINATIONS(any, )
-#if defined(__x86_64__)
-    ACF_COMBINATIONS(avx2, ACF_AVX2)
-    ACF_COMBINATIONS(avx512, ACF_AVX512)
-#endif
-#undef ACF_COMBINATIONS
+    template <unsigned int n_vectors>
+    std::vector<double>
+    store_and_multiply(const Combination &combination,
+                       const std::vector<const double *> &vectors,
+                       NodalVector &y)
+    {
+      return sum_ranges<Sums>(
+               y.size(),
+               [&](const std::size_t begin, const std::size_t end) {
+                 Sums sums;
+                 sums.values.resize(n_vectors + 1);
+                 run_vectorized(
+                   StoreAndMultiply<n_vectors>{combination,
+                                               y.begin(),
+                                               vectors.data(),
+                                               begin,
+                                               end,
+                                               sums.values.data()});
+                 return sums;
+               })
+        .values;
+    }
   } // namespace
 
 
@@ -105,26 +229,57 @@ namespace ACF
   void
   linear_combination(const std::vector<ScaledVector> &terms, NodalVector &y)
   {
-    const std::size_t n = terms.front().vector->size();
-    if (y.size() != n)
-      y.reinit(n, true);
-    double *const result = y.begin();
-    std::vector<double> c;
-    std::vector<const double *> x;
-    for (const ScaledVector &term : terms)
-      {
-        AssertDimension(term.vector->size(), n);
-        c.push_back(term.factor);
-        x.push_back(term.vector->begin());
-      }
-    run_ranges(n, [&](const std::size_t begin, const std::size_t end) {
-#if defined(__x86_64__)
-      if (present_processor() == Processor::avx512)
-        return combine_avx512(c.size(), c.data(), x.data(), begin, end, result);
-      if (present_processor() == Processor::avx2)
-        return combine_avx2(c.size(), c.data(), x.data(), begin, end, result);
-#endif
-      combine_any(c.size(), c.data(), x.data(), begin, end, result);
+    set_size(terms, y);
+    const Terms all(terms);
+    run_ranges(y.size(), [&](const std::size_t begin, const std::size_t end) {
+      run_vectorized(Store{Combination(all), y.begin(), begin, end});
     });
+  }
+
+
+
+  std::vector<double>
+  linear_combination(const std::vector<ScaledVector> &terms,
+                     const std::vector<const NodalVector *> &z,
+                     NodalVector &y)
+  {
+    set_size(terms, y);
+    const Terms all(terms);
+    const Combination combination(all);
+    std::vector<const double *> vectors;
+    for (const NodalVector *const vector : z)
+      {
+        AssertDimension(vector->size(), y.size());
+        vectors.push_back(vector->begin());
+      }
+    switch (z.size())
+      {
+        case 0:
+          return store_and_multiply<0>(combination, vectors, y);
+        case 1:
+          return store_and_multiply<1>(combination, vectors, y);
+        case 2:
+          return store_and_multiply<2>(combination, vectors, y);
+        case 3:
+          return store_and_multiply<3>(combination, vectors, y);
+        default:
+          AssertThrow(false, ExcNotImplemented());
+          return {};
+      }
+  }
+
+
+
+  double
+  square_of_combination(const std::vector<ScaledVector> &terms)
+  {
+    const Terms all(terms);
+    return sum_ranges<double>(
+      terms.front().vector->size(),
+      [&](const std::size_t begin, const std::size_t end) {
+        double total = 0;
+        run_vectorized(AddSquare{Combination(all), begin, end, total});
+        return total;
+      });
   }
 } // namespace ACF

@@ -364,33 +364,46 @@ namespace ACF
                                 const Vector &change_values)
   {
     const unsigned int n = system.n_marker_values();
-    Vector mu, phi, solution;
-    if (is_complete || !eliminate_markers(uncoupled, g, mu, phi))
+    Vector mu;
+    if (is_complete || !eliminate_markers(uncoupled, g, mu, marker_forces))
       {
         if (!is_complete)
           factorize_all();
         Vector rhs(n + g.size() + n_change_unknowns);
         rhs << uncoupled, g, change_values;
-        solution = marker_system.solve(rhs);
-        mu       = solution.segment(n, g.size());
-        phi      = H_transposed.matrix().transpose() * solution.head(n) +
-              D.matrix().transpose() * mu;
-      }
-
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      {
-        if (!system.body_markers(b).empty())
-          factors[b]->subtract_columns(
-            compliances[b].functional_forces(
-              phi.segment(first_values[b], compliances[b].n_values())),
-            body(b));
-        if (!changes.empty() && changes[b].columns.cols() > 0)
-          Eigen::Map<Vector>(body(b), factors[b]->size()) -=
-            changes[b].solutions *
-            (changes[b].size *
-             solution.segment(changes[b].first, changes[b].columns.cols()));
+        unknowns      = marker_system.solve(rhs);
+        mu            = unknowns.segment(n, g.size());
+        marker_forces = H_transposed.matrix().transpose() * unknowns.head(n) +
+                        D.matrix().transpose() * mu;
       }
     return mu;
+  }
+
+
+
+  template <typename Number>
+  const Number *
+  CoupledSystem<Number>::solution(const unsigned int b)
+  {
+    const bool has_markers = !system.body_markers(b).empty();
+    const bool is_changed  = !changes.empty() && changes[b].columns.cols() > 0;
+    if (bodies_are_free)
+      {
+        if (!has_markers && !is_changed)
+          return nullptr;
+        std::fill(body(b), body(b) + factors[b]->size(), Number(0));
+      }
+    if (has_markers)
+      factors[b]->subtract_columns(
+        compliances[b].functional_forces(
+          marker_forces.segment(first_values[b], compliances[b].n_values())),
+        body(b));
+    if (is_changed)
+      Eigen::Map<Vector>(body(b), factors[b]->size()) -=
+        changes[b].solutions *
+        (changes[b].size *
+         unknowns.segment(changes[b].first, changes[b].columns.cols()));
+    return body(b);
   }
 
 
@@ -399,6 +412,7 @@ namespace ACF
   typename CoupledSystem<Number>::Vector
   CoupledSystem<Number>::solve(const Vector &g)
   {
+    bodies_are_free = false;
     solve_bodies();
     if (system.n_marker_values() + n_change_unknowns == 0)
       return g;
@@ -426,7 +440,7 @@ namespace ACF
   typename CoupledSystem<Number>::Vector
   CoupledSystem<Number>::solve_constraints(const Vector &g)
   {
-    std::fill(values.begin(), values.end(), Number(0));
+    bodies_are_free = true;
     if (system.n_marker_values() == 0)
       return g;
     return couple(Vector::Zero(system.n_marker_values()),

@@ -261,11 +261,12 @@ namespace ACF
       mu = coupled_system.solve_constraints(g);
 
     run_tasks(n_bodies, [&](const unsigned int b) {
-      add_in_world_frame(coupled_system.body(b),
-                         to_stages,
-                         frames_of(rotations, b, stages == nullptr),
-                         is_first,
-                         stages_of(stage_increments, b));
+      if (const Number *const w = coupled_system.solution(b))
+        add_in_world_frame(w,
+                           to_stages,
+                           frames_of(rotations, b, stages == nullptr),
+                           is_first && stages != nullptr,
+                           stages_of(stage_increments, b));
     });
     for (unsigned int i = 0; i < n_stages; ++i)
       for (unsigned int r = 0; r < mu.size(); ++r)
@@ -457,6 +458,8 @@ namespace ACF
         for (unsigned int j = 0; j < i; ++j)
           BW[i] -= L(i, j) * BW[j];
         constraint_increments[i] = systems[i]->solve(BW[i]);
+        for (unsigned int b = 0; b < n_bodies; ++b)
+          systems[i]->solution(b);
         statistics.real_solves += n_bodies;
       }
 
@@ -471,7 +474,7 @@ namespace ACF
             add_in_world_frame(systems[j]->body(b),
                                factors,
                                frames,
-                               j == 0,
+                               j == 0 && stages != nullptr,
                                stages_of(stage_increments, b));
           }
       }

@@ -123,7 +123,7 @@ namespace ACF
     statistics.real_solves += r.size();
     for (unsigned int b = 0; b < r.size(); ++b)
       NodeRotations(tangents[b].rotation())
-        .to_world(coupled_system->body(b),
+        .to_world(coupled_system->solution(b),
                   system.bodies()[b].operators().n_nodes,
                   r[b]);
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: LGPL-2.1-or-later
 // Copyright (C) 2026 The acf-dealii authors
 
-#include <acf/base/linear_combination.h>
+#include <acf/base/parallel.h>
 #include <acf/time/local_error.h>
 
 #include <algorithm>
@@ -166,18 +166,19 @@ namespace ACF
         weights    = local_error_weights(tableau, sizes);
       }
 
-    double error = 0;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      {
-        std::vector<ScaledVector> terms;
-        for (unsigned int k = 0; k < weights.size(); ++k)
-          for (unsigned int i = 0; i < increments.size(); ++i)
-            terms.push_back({weights[k](i),
-                             k == 0 ? &increments[i][b]
-                                    : &history.steps[k - 1].increments[i][b]});
-        linear_combination(terms, sum);
-        error = std::max(error, relative_norm(system.bodies()[b], sum));
-      }
-    return error;
+    std::vector<double> errors(system.bodies().size());
+    run_tasks(errors.size(), [&](const unsigned int b) {
+      std::vector<ScaledVector> terms;
+      for (unsigned int k = 0; k < weights.size(); ++k)
+        for (unsigned int i = 0; i < increments.size(); ++i)
+          terms.push_back({weights[k](i),
+                           k == 0 ? &increments[i][b]
+                                  : &history.steps[k - 1].increments[i][b]});
+      errors[b] = relative_norm(system.bodies()[b], terms);
+    });
+    double largest = 0;
+    for (const double error : errors)
+      largest = std::max(largest, error);
+    return largest;
   }
 } // namespace ACF

@@ -2,6 +2,7 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
+#include <acf/base/parallel.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/radau_stepper.h>
 
@@ -55,42 +56,47 @@ namespace ACF
   void
   RadauStepper::predict(const SystemState &state)
   {
-    if (!extrapolates())
-      {
-        for (SystemVector &stage : equations.increments)
-          for (NodalVector &Z : stage)
-            Z = 0;
-        for (Eigen::VectorXd &lambda : equations.multipliers)
-          lambda = state.multipliers;
-      }
-    else
+    if (extrapolates())
       {
         predictor.start_step(history, equations.step_size());
-        for (unsigned int b = 0; b < system.bodies().size(); ++b)
-          predictor.predict(history, b, equations.increments);
         predictor.predict(history, equations.multipliers);
       }
-    if (!parameters.extrapolates)
+    else
+      for (Eigen::VectorXd &lambda : equations.multipliers)
+        lambda = state.multipliers;
+    straight.resize(tableau.n_stages(), SystemVector(turns.size()));
+    turning.resize(tableau.n_stages(), SystemVector(turns.size()));
+    equations.increments_have_changed();
+    run_tasks(turns.size(), [&](const unsigned int b) {
+      if (extrapolates())
+        predictor.predict(history, b, equations.increments);
+      else
+        for (SystemVector &stage : equations.increments)
+          stage[b] = 0;
+      if (parameters.extrapolates)
+        follow_turning(b, state);
+      equations.evaluate_moments(b);
+    });
+  }
+
+
+
+  void
+  RadauStepper::follow_turning(const unsigned int b, const SystemState &state)
+  {
+    const Vector3 spin = body_spin(system.bodies()[b].rotation_measure(),
+                                   equations.start_moments(b).gradient,
+                                   equations.start_velocity_moments(b).gradient)
+                           .value_or(Vector3());
+    turns[b] = spin.norm() * equations.step_size() > fast_turn;
+    if (!turns[b])
       return;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      {
-        const Vector3 spin =
-          body_spin(system.bodies()[b].rotation_measure(),
-                    equations.start_moments(b).gradient,
-                    equations.start_velocity_moments(b).gradient)
-            .value_or(Vector3());
-        turns[b] = spin.norm() * equations.step_size() > fast_turn;
-        if (!turns[b])
-          continue;
-        straight.resize(tableau.n_stages(), SystemVector(turns.size()));
-        turning.resize(tableau.n_stages(), SystemVector(turns.size()));
-        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-          straight[i][b] = turning[i][b] = equations.increments[i][b];
-        predict_turning(b, state, spin, turning);
-        if (turning_is_better[b])
-          for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-            equations.increments[i][b] = turning[i][b];
-      }
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      straight[i][b] = turning[i][b] = equations.increments[i][b];
+    predict_turning(b, state, spin, turning);
+    if (turning_is_better[b])
+      for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+        equations.increments[i][b] = turning[i][b];
   }
 
 
@@ -174,7 +180,6 @@ namespace ACF
     do
       {
         predict(state);
-        equations.increments_have_changed();
         iteration.run(equations, tolerances(), report);
     } while (!report.converged && iteration.linearize_better());
     iteration.end_step(equations, report);
@@ -220,12 +225,11 @@ namespace ACF
     for (unsigned int b = 0; b < turns.size(); ++b)
       turning_is_better[b] = !turns[b] || prediction_error(b, turning) <=
                                             prediction_error(b, straight);
+    const bool was_extrapolated = extrapolates();
+    if (was_extrapolated)
+      predictor.accept(history, equations.multipliers);
     if (!history.steps.empty())
       {
-        if (parameters.extrapolates)
-          predictor.accept(history,
-                           equations.increments,
-                           equations.multipliers);
         const double ratio = equations.step_size() / history.steps[0].size;
         const double order = local_error_order(tableau);
         expected_error =
@@ -236,15 +240,14 @@ namespace ACF
     step_start.law_values  = state.law_values;
     step_start.positions.resize(turns.size());
     step_start.velocities.resize(turns.size());
-    for (unsigned int b = 0; b < turns.size(); ++b)
-      {
-        // in the memory of the start of the last step
-        equations.end_state(b,
-                            step_start.positions[b],
-                            step_start.velocities[b]);
-        state.positions[b].swap(step_start.positions[b]);
-        state.velocities[b].swap(step_start.velocities[b]);
-      }
+    run_tasks(turns.size(), [&](const unsigned int b) {
+      if (was_extrapolated)
+        predictor.accept(history, b, equations.increments);
+      // in the memory of the start of the last step
+      equations.end_state(b, step_start.positions[b], step_start.velocities[b]);
+      state.positions[b].swap(step_start.positions[b]);
+      state.velocities[b].swap(step_start.velocities[b]);
+    });
     state.time += equations.step_size();
     state.multipliers = equations.multipliers.back();
     history.push(equations.step_size(),

@@ -48,16 +48,15 @@ namespace ACF
   {
     state = &new_state;
     tau   = step_size;
-    for (unsigned int b = 0; b < system.bodies().size(); ++b)
-      {
-        const BodyOperators &body = system.bodies()[b].operators();
-        const std::vector<NodalMoments> moments =
-          nodal_moments(body,
-                        std::vector<const NodalVector *>{
-                          &state->positions[b], &state->velocities[b]});
-        position_moments[b] = moments[0];
-        velocity_moments[b] = moments[1];
-      }
+    run_tasks(system.bodies().size(), [&](const unsigned int b) {
+      const BodyOperators &body = system.bodies()[b].operators();
+      const std::vector<NodalMoments> moments =
+        nodal_moments(body,
+                      std::vector<const NodalVector *>{&state->positions[b],
+                                                       &state->velocities[b]});
+      position_moments[b] = moments[0];
+      velocity_moments[b] = moments[1];
+    });
     if (system.n_marker_values() == 0)
       return;
     start_markers      = system.marker_values(state->positions);

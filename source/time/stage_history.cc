@@ -19,17 +19,10 @@ namespace ACF
 
 
   double
-  relative_norm(const MultibodySystem &system, const SystemVector &vector)
+  relative_norm(const Body &body, const std::vector<ScaledVector> &terms)
   {
-    double norm = 0;
-    for (unsigned int b = 0; b < vector.size(); ++b)
-      {
-        const double relative = relative_norm(system.bodies()[b], vector[b]);
-        if (!std::isfinite(relative))
-          return relative;
-        norm = std::max(norm, relative);
-      }
-    return norm;
+    return std::sqrt(square_of_combination(terms) / body.operators().n_nodes) /
+           body.operators().length;
   }
 
 

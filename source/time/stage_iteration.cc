@@ -4,6 +4,7 @@
 #include <acf/base/archive.h>
 #include <acf/base/exceptions.h>
 #include <acf/base/linear_combination.h>
+#include <acf/base/parallel.h>
 #include <acf/mechanics/reduced_strain.h>
 #include <acf/time/stage_iteration.h>
 
@@ -18,15 +19,6 @@ namespace ACF
     // Relative to the length of a body: far from the solution a tangent may be
     // so stiff against turning that short increments do not mean a small error.
     constexpr double largest_correction = 0.1;
-
-
-
-    // y += x
-    void
-    add(const NodalVector &x, NodalVector &y)
-    {
-      linear_combination({{1, &y}, {1, &x}}, y);
-    }
 
 
 
@@ -206,16 +198,11 @@ namespace ACF
         if (k == max_corrections ||
             !(largest > std::max(1e-14 * length, 2 * constraint_round_off)))
           return;
-        before                 = largest;
-        StageVector &increment = newton_increment;
-        stage_solver->solve_constraints(increment, constraints);
+        before = largest;
+        stage_solver->solve_constraints(equations.increments, constraints);
         ++statistics.constraint_corrections;
         for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-          {
-            for (unsigned int b = 0; b < system.bodies().size(); ++b)
-              add(increment[i][b], equations.increments[i][b]);
-            equations.multipliers[i] += constraints[i];
-          }
+          equations.multipliers[i] += constraints[i];
         equations.increments_have_changed();
       }
   }
@@ -225,15 +212,39 @@ namespace ACF
   double
   StageIteration::increment_norm(const StageVector &increment) const
   {
-    double norm = 0;
-    for (const SystemVector &stage : increment)
+    std::vector<double> norms(system.bodies().size() * tableau.n_stages());
+    run_tasks(system.bodies().size(), [&](const unsigned int b) {
+      for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+        norms[b * tableau.n_stages() + i] =
+          relative_norm(system.bodies()[b], increment[i][b]);
+    });
+    double largest = 0;
+    for (const double norm : norms)
       {
-        const double relative = relative_norm(system, stage);
-        if (!std::isfinite(relative))
-          return relative;
-        norm = std::max(norm, relative);
+        if (!std::isfinite(norm))
+          return norm;
+        largest = std::max(largest, norm);
       }
-    return norm;
+    return largest;
+  }
+
+
+
+  void
+  StageIteration::add(const StageVector &increment,
+                      const StageConstraints &constraint_increment,
+                      StageEquations &equations) const
+  {
+    run_tasks(system.bodies().size(), [&](const unsigned int b) {
+      for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+        {
+          NodalVector &Z = equations.increments[i][b];
+          linear_combination({{1, &Z}, {1, &increment[i][b]}}, Z);
+        }
+    });
+    for (unsigned int i = 0; i < tableau.n_stages(); ++i)
+      equations.multipliers[i] += constraint_increment[i];
+    equations.increments_have_changed();
   }
 
 
@@ -289,13 +300,7 @@ namespace ACF
         // the last increment is small enough as it is
         if (accelerate && !report.converged)
           acceleration.accelerate(increment, constraint_increment);
-        for (unsigned int i = 0; i < tableau.n_stages(); ++i)
-          {
-            for (unsigned int b = 0; b < system.bodies().size(); ++b)
-              add(increment[i][b], equations.increments[i][b]);
-            equations.multipliers[i] += constraint_increment[i];
-          }
-        equations.increments_have_changed();
+        add(increment, constraint_increment, equations);
         if (report.converged)
           {
             first_iteration.end_step(norms);

@@ -2,7 +2,6 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/archive.h>
-#include <acf/base/dot_product.h>
 #include <acf/base/linear_combination.h>
 #include <acf/time/stage_predictor.h>
 
@@ -150,7 +149,6 @@ namespace ACF
 
   void
   StagePredictor::accept(const StageHistory &history,
-                         const StageVector &increments,
                          const StageConstraints &multipliers)
   {
     if (step_size != history.steps[0].size)
@@ -167,36 +165,42 @@ namespace ACF
         newest = std::move(defects.back());
         defects.pop_back();
       }
-    newest.increments.resize(increments.size(), SystemVector(products.size()));
+    newest.increments.resize(multipliers.size(), SystemVector(products.size()));
     defects.push_front(std::move(newest));
-
-    const StageVector &last = history.steps[0].increments;
-    for (unsigned int b = 0; b < products.size(); ++b)
-      {
-        Eigen::VectorXd row = Eigen::VectorXd::Zero(defects.size());
-        for (unsigned int i = 0; i < increments.size(); ++i)
-          {
-            std::vector<ScaledVector> terms{{1, &increments[i][b]}};
-            for (unsigned int j = 0; j < increments.size(); ++j)
-              terms.push_back({-extrapolation(i, j), &last[j][b]});
-            linear_combination(terms, defects[0].increments[i][b]);
-
-            std::vector<const NodalVector *> vectors;
-            for (const Defect &defect : defects)
-              vectors.push_back(&defect.increments[i][b]);
-            const std::vector<double> sums = dot_products(*vectors[0], vectors);
-            row += Eigen::Map<const Eigen::VectorXd>(sums.data(), sums.size());
-          }
-        prepend(row, max_terms + max_targets, products[b]);
-      }
 
     defects[0].multipliers = multipliers;
     extrapolate(history, -1, defects[0].multipliers);
     Eigen::VectorXd row = Eigen::VectorXd::Zero(defects.size());
     for (unsigned int k = 0; k < defects.size(); ++k)
-      for (unsigned int i = 0; i < increments.size(); ++i)
+      for (unsigned int i = 0; i < multipliers.size(); ++i)
         row(k) += defects[0].multipliers[i].dot(defects[k].multipliers[i]);
     prepend(row, max_terms + max_targets, multiplier_products);
+  }
+
+
+
+  void
+  StagePredictor::accept(const StageHistory &history,
+                         const unsigned int b,
+                         const StageVector &increments)
+  {
+    if (defects.empty())
+      return;
+    const StageVector &last = history.steps[0].increments;
+    Eigen::VectorXd row     = Eigen::VectorXd::Zero(defects.size());
+    for (unsigned int i = 0; i < increments.size(); ++i)
+      {
+        std::vector<ScaledVector> terms{{1, &increments[i][b]}};
+        for (unsigned int j = 0; j < increments.size(); ++j)
+          terms.push_back({-extrapolation(i, j), &last[j][b]});
+        std::vector<const NodalVector *> earlier;
+        for (unsigned int k = 1; k < defects.size(); ++k)
+          earlier.push_back(&defects[k].increments[i][b]);
+        const std::vector<double> sums =
+          linear_combination(terms, earlier, defects[0].increments[i][b]);
+        row += Eigen::Map<const Eigen::VectorXd>(sums.data(), sums.size());
+      }
+    prepend(row, max_terms + max_targets, products[b]);
   }
 
 

@@ -161,16 +161,17 @@ namespace ACF
         coupled_system.solve_constraints(g);
         double largest = 0;
         for (unsigned int b = 0; b < system.bodies().size(); ++b)
-          for (unsigned int a = 0; a < x[b].size() / dim; ++a)
-            {
-              Vector3 w;
-              for (unsigned int i = 0; i < dim; ++i)
-                w[i] = coupled_system.body(b)[dim * a + i];
-              w       = rotations[b][a] * w;
-              largest = std::max(largest, w.norm());
-              for (unsigned int i = 0; i < dim; ++i)
-                x[b][dim * a + i] += w[i];
-            }
+          if (const double *const solution = coupled_system.solution(b))
+            for (unsigned int a = 0; a < x[b].size() / dim; ++a)
+              {
+                Vector3 w;
+                for (unsigned int i = 0; i < dim; ++i)
+                  w[i] = solution[dim * a + i];
+                w       = rotations[b][a] * w;
+                largest = std::max(largest, w.norm());
+                for (unsigned int i = 0; i < dim; ++i)
+                  x[b][dim * a + i] += w[i];
+              }
         return largest;
       }
 

@@ -11,6 +11,8 @@
 //
 // Usage: chain_cost [--quick]
 
+#include <acf/base/huge_pages.h>
+
 #include <mpi.h>
 
 #include <algorithm>
@@ -114,6 +116,7 @@ int
 main(int argc, char **argv)
 {
   const bool quick = (argc > 1 && std::string(argv[1]) == "--quick");
+  ACF::keep_heap_in_huge_pages();
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
 

@@ -170,6 +170,7 @@ main(int argc, char **argv)
   const bool quick = (argc > 1 && std::string(argv[1]) == "--quick");
   if (argc > 1 && !quick)
     MultithreadInfo::set_thread_limit(std::stoi(argv[1]));
+  ACF::keep_heap_in_huge_pages();
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
 

@@ -10,6 +10,8 @@
 //
 // Usage: step_cost [--quick]
 
+#include <acf/base/huge_pages.h>
+
 #include <mpi.h>
 
 #include <algorithm>
@@ -76,6 +78,7 @@ int
 main(int argc, char **argv)
 {
   const bool quick = (argc > 1 && std::string(argv[1]) == "--quick");
+  ACF::keep_heap_in_huge_pages();
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
 

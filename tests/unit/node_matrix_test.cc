@@ -2,11 +2,16 @@
 // Copyright (C) 2026 The acf-dealii authors
 
 #include <acf/base/dot_product.h>
+#include <acf/base/huge_pages.h>
 #include <acf/base/linear_combination.h>
 #include <acf/base/parallel.h>
 #include <acf/mechanics/node_matrix.h>
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <sstream>
 
 #include <unit/mechanics_test.h>
 
@@ -246,10 +251,10 @@ TEST(NodeMatrix, BlocksAndRowSums)
     }
 }
 
-TEST(LinearCombination, AnyNumberOfTerms)
+TEST(LinearCombination, AnyNumberOfTermsAndProducts)
 {
   const ThreadLimit threads;
-  for (const unsigned int size : {1, 7, 8, 1000, 20001})
+  for (const unsigned int size : {1, 7, 8, 16, 1000, 20001})
     for (unsigned int n = 1; n <= 7; ++n)
       for (const unsigned int n_threads : {1, 2})
         {
@@ -262,8 +267,27 @@ TEST(LinearCombination, AnyNumberOfTerms)
           for (unsigned int k = 0; k < n; ++k)
             expected.add(1.5 - k, x[k]);
           linear_combination(terms, y);
-          linear_combination(terms, x[0]);
           EXPECT_EQ(y.size(), size);
+
+          const std::vector<NodalVector> z = test_vectors(3, size);
+          const double square              = expected * expected;
+          EXPECT_NEAR(square_of_combination(terms), square, 1e-14 * square);
+          for (unsigned int n_products = 0; n_products <= 3; ++n_products)
+            {
+              std::vector<const NodalVector *> vectors;
+              for (unsigned int k = 0; k < n_products; ++k)
+                vectors.push_back(&z[k]);
+              NodalVector same;
+              const std::vector<double> products =
+                linear_combination(terms, vectors, same);
+              EXPECT_EQ(same, y);
+              ASSERT_EQ(products.size(), 1 + n_products);
+              EXPECT_NEAR(products[0], square, 1e-14 * square);
+              for (unsigned int k = 0; k < n_products; ++k)
+                EXPECT_NEAR(products[k + 1], expected * z[k], 1e-14 * size);
+            }
+
+          linear_combination(terms, x[0]);
           EXPECT_EQ(x[0], y);
           y -= expected;
           EXPECT_LT(y.linfty_norm(), 1e-14);
@@ -284,11 +308,46 @@ TEST(DotProduct, AnySize)
         EXPECT_NEAR(dot_product(x[0], x[1]),
                     static_cast<double>(expected),
                     1e-15 * size);
-        const std::vector<double> products = dot_products(x[0], {&x[1], &x[0]});
-        EXPECT_NEAR(products[0], static_cast<double>(expected), 1e-15 * size);
-        EXPECT_EQ(products[1], dot_product(x[0], x[0]));
       }
 }
+
+#if defined(__linux__) && defined(__GLIBC__) && \
+  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+// The flags of the part of the address space that holds an address.
+std::string
+flags_of_address(const void *const address)
+{
+  std::ifstream maps("/proc/self/smaps");
+  const auto wanted = reinterpret_cast<std::uintptr_t>(address);
+  bool is_inside    = false;
+  for (std::string line; std::getline(maps, line);)
+    {
+      std::istringstream words(line);
+      std::uintptr_t begin, end;
+      char minus;
+      if (words >> std::hex >> begin >> minus >> end && minus == '-')
+        is_inside = begin <= wanted && wanted < end;
+      else if (is_inside && line.rfind("VmFlags:", 0) == 0)
+        return line + " ";
+    }
+  return "";
+}
+
+TEST(HugePages, HeapIsAdvised)
+{
+  if (!std::filesystem::exists("/sys/kernel/mm/transparent_hugepage"))
+    GTEST_SKIP() << "the system has no huge pages";
+  keep_heap_in_huge_pages();
+  // more than what was free before
+  std::vector<std::unique_ptr<char[]>> memory;
+  for (unsigned int k = 0; k < 8; ++k)
+    memory.emplace_back(new char[8 << 20]);
+  const std::string flags = flags_of_address(&memory.back()[4 << 20]);
+  EXPECT_NE(flags.find(" hg "), std::string::npos) << flags;
+}
+#endif
+
+
 
 TEST(Parallel, SumsDoNotDependOnTiming)
 {

@@ -15,10 +15,6 @@ namespace ACF
    */
   double
   dot_product(const NodalVector &x, const NodalVector &y);
-
-  /** Those of x with some vectors, for which it is read once. */
-  std::vector<double>
-  dot_products(const NodalVector &x, const std::vector<const NodalVector *> &y);
 } // namespace ACF
 
 #endif

@@ -23,6 +23,20 @@ namespace ACF
    */
   void
   linear_combination(const std::vector<ScaledVector> &terms, NodalVector &y);
+
+  /**
+   * The same, and products with it in the same sweep.
+   * @param z up to three vectors, not y
+   * @return $y \cdot y, y \cdot z_0, ...$
+   */
+  std::vector<double>
+  linear_combination(const std::vector<ScaledVector> &terms,
+                     const std::vector<const NodalVector *> &z,
+                     NodalVector &y);
+
+  /** $|\sum_k c_k x_k|^2$, without making the sum. */
+  double
+  square_of_combination(const std::vector<ScaledVector> &terms);
 } // namespace ACF
 
 #endif

@@ -99,7 +99,7 @@ namespace ACF
             const MarkerCoefficients<Number> &coefficients,
             const std::vector<LowRankChange> &changes = {});
 
-    /** Right-hand side $r_b$ or solution $w_b$ of a body, in its frame. */
+    /** Right-hand side $r_b$ of a body, in its frame, and then the solution. */
     Number *
     body(const unsigned int b)
     {
@@ -107,9 +107,9 @@ namespace ACF
     }
 
     /**
-     * Replaces the $r_b$ by the $w_b$.
+     * Solves for the $r_b$ that body() was given.
      * @param g right-hand side of the constraints
-     * @return $\mu$
+     * @return $\mu$; the $w_b$ are left to solution()
      */
     Vector
     solve(const Vector &g);
@@ -117,6 +117,14 @@ namespace ACF
     /** The same for $r_b = 0$: no solves with factors of the bodies. */
     Vector
     solve_constraints(const Vector &g);
+
+    /**
+     * Completes $w_b$ by what joints do to a body: once after each solve, for
+     * different bodies possibly in parallel.
+     * @return body(), or null if all of $w_b$ is zero
+     */
+    const Number *
+    solution(const unsigned int body);
 
   private:
     /** Of an iteration that is worth while. */
@@ -171,8 +179,9 @@ namespace ACF
                       Vector &phi);
 
     /**
-     * Finishes with what the uncoupled bodies give to the first and the last
-     * rows of the small system.
+     * Solves the small system.
+     * @param uncoupled, changes what the uncoupled bodies give to its first and
+     * its last rows
      */
     Vector
     couple(const Vector &uncoupled, const Vector &g, const Vector &changes);
@@ -217,6 +226,12 @@ namespace ACF
     /** Per body, if there are any. */
     std::vector<MatrixChange<Number>> changes;
     unsigned int n_change_unknowns = 0;
+
+    /** Of the last solve, for solution(): $\phi$, all unknowns if there are
+     * changes, and whether the $r_b$ are zero. */
+    Vector marker_forces;
+    Vector unknowns;
+    bool bodies_are_free = false;
   };
 } // namespace ACF
 

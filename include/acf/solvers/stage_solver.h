@@ -79,7 +79,7 @@ namespace ACF
     /**
      * The same for r = 0, which needs no solves of the bodies, and with the
      * mean rotations in all stages, so that affine constraints hold afterwards.
-     * @param[out] stages $\Delta Z$
+     * @param[in,out] stages $\Delta Z$ is added to them
      * @param[in,out] constraints g, replaced by $\Delta\Lambda$
      */
     virtual void
@@ -140,8 +140,11 @@ namespace ACF
                       StageConstraints &constraints) override;
 
   private:
-    /** Adds what a component gives; the first one replaces the increments,
-     * after it has read the right-hand sides. */
+    /**
+     * Adds what a component gives.
+     * @param is_first increments are replaced, those of the stages after the
+     * right-hand sides have been read, if there are any
+     */
     template <typename Number>
     void
     solve_component(const StageDiagonalization::Component &component,

@@ -72,8 +72,6 @@ namespace ACF
     /** Of the last estimate. */
     std::vector<double> step_sizes;
     std::vector<Eigen::VectorXd> weights;
-
-    NodalVector sum;
   };
 } // namespace ACF
 

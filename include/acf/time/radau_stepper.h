@@ -66,6 +66,11 @@ namespace ACF
     void
     predict(const SystemState &state);
 
+    /** Replaces the prediction of a body that turns fast if another one was
+     * better in the last step. */
+    void
+    follow_turning(const unsigned int body, const SystemState &state);
+
     /**
      * A prediction for a body that turns fast: only its centre of mass follows
      * that of the StagePredictor, the rest moves without acceleration in a
@@ -108,7 +113,7 @@ namespace ACF
      * in the last step. */
     StageVector straight;
     StageVector turning;
-    std::vector<bool> turns;
+    std::vector<char> turns;
     std::vector<bool> turning_is_better;
 
     /** Estimated in the last steps, falls at most by half per step; negative:

@@ -118,6 +118,14 @@ namespace ACF
     void
     increments_have_changed();
 
+    /** Sums over increments of a body, which rotations() and residual() need:
+     * they may be made while the increments are in the caches. */
+    void
+    evaluate_moments(const unsigned int body)
+    {
+      moments_of_increments(body);
+    }
+
     /** Increments Z, m. */
     StageVector increments;
 

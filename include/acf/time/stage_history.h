@@ -4,6 +4,7 @@
 #ifndef acf_time_stage_history_h
 #define acf_time_stage_history_h
 
+#include <acf/base/linear_combination.h>
 #include <acf/solvers/stage_solver.h>
 
 #include <deque>
@@ -17,9 +18,9 @@ namespace ACF
   double
   relative_norm(const Body &body, const NodalVector &vector);
 
-  /** The largest one of the bodies. */
+  /** That of a linear combination. */
   double
-  relative_norm(const MultibodySystem &system, const SystemVector &vector);
+  relative_norm(const Body &body, const std::vector<ScaledVector> &terms);
 
 
 

@@ -226,9 +226,15 @@ namespace ACF
     void
     correct_constraints(StageEquations &equations);
 
-    /** The largest one of the stages, see relative_norm(). */
+    /** The largest one of the bodies and stages, see relative_norm(). */
     double
     increment_norm(const StageVector &increment) const;
+
+    /** Adds increments to those of the step. */
+    void
+    add(const StageVector &increment,
+        const StageConstraints &constraint_increment,
+        StageEquations &equations) const;
 
     const MultibodySystem &system;
     const ButcherTableau &tableau;

@@ -50,12 +50,16 @@ namespace ACF
     void
     predict(const StageHistory &history, StageConstraints &multipliers) const;
 
-    /** Takes note of an accepted step.
+    /** Takes note of an accepted step: of the multipliers, and then of each
+     * body, possibly in parallel.
      * @param history the steps before it */
     void
+    accept(const StageHistory &history, const StageConstraints &multipliers);
+
+    void
     accept(const StageHistory &history,
-           const StageVector &increments,
-           const StageConstraints &multipliers);
+           const unsigned int body,
+           const StageVector &increments);
 
     /** Saves or loads what steps leave. */
     void

@@ -19,6 +19,7 @@
 // on a small pendulum, and fails if they disagree.
 
 #include <acf/base/exceptions.h>
+#include <acf/base/huge_pages.h>
 #include <acf/run_report.h>
 #include <acf/simulation.h>
 
@@ -153,6 +154,7 @@ namespace
 int
 main(int argc, char **argv)
 {
+  ACF::keep_heap_in_huge_pages();
   int provided;
   MPI_Init_thread(&argc, &argv, MPI_THREAD_SERIALIZED, &provided);
   int status = 1;
