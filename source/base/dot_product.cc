@@ -11,38 +11,25 @@ namespace ACF
   namespace
   {
     // Four sums that do not wait for each other.
-    ACF_INLINE double
-    multiply_and_add(const double *const x,
-                     const double *const y,
-                     const std::size_t begin,
-                     const std::size_t end)
-    {
-      Eight sums[4] = {};
-      std::size_t i = begin;
-      for (; i + 32 <= end; i += 32)
-        {
-          ACF_UNROLL
-          for (unsigned int k = 0; k < 4; ++k)
-            sums[k] += load_lanes<Eight>(x + i + 8 * k) *
-                       load_lanes<Eight>(y + i + 8 * k);
-        }
-      const Eight sum = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-      double total    = 0;
-      for (unsigned int k = 0; k < 8; ++k)
-        total += sum[k];
-      for (; i < end; ++i)
-        total += x[i] * y[i];
-      return total;
-    }
-
-
-
     struct AddProduct
     {
+      template <typename Lanes>
       ACF_INLINE void
-      operator()() const
+      run() const
       {
-        sum += multiply_and_add(x, y, begin, end);
+        constexpr unsigned int n = n_lanes<Lanes>;
+        Lanes sums[4]            = {};
+        std::size_t i            = begin;
+        for (; i + 4 * n <= end; i += 4 * n)
+          {
+            ACF_UNROLL
+            for (unsigned int k = 0; k < 4; ++k)
+              sums[k] += load_lanes<Lanes>(x + i + n * k) *
+                         load_lanes<Lanes>(y + i + n * k);
+          }
+        sum += sum_of_lanes((sums[0] + sums[1]) + (sums[2] + sums[3]));
+        for (; i < end; ++i)
+          sum += x[i] * y[i];
       }
 
       const double *x;
@@ -61,7 +48,7 @@ namespace ACF
     return sum_ranges<double>(
       x.size(), [&](const std::size_t begin, const std::size_t end) {
         double sum = 0;
-        run_vectorized(AddProduct{x.begin(), y.begin(), begin, end, sum});
+        run_in_lanes(AddProduct{x.begin(), y.begin(), begin, end, sum});
         return sum;
       });
   }

@@ -11,6 +11,7 @@
 #include <limits>
 
 #include <sys/mman.h>
+#include <sys/resource.h>
 #if defined(__GLIBC__)
 #  include <malloc.h>
 #endif
@@ -41,8 +42,14 @@ namespace ACF
   {
 #if defined(__GLIBC__) && defined(MADV_HUGEPAGE)
     constexpr std::size_t most = std::size_t(1) << 30;
-    const std::size_t memory =
+    std::size_t memory =
       static_cast<std::size_t>(sysconf(_SC_PHYS_PAGES)) * sysconf(_SC_PAGESIZE);
+    for (const auto resource : {RLIMIT_AS, RLIMIT_DATA})
+      {
+        rlimit limit;
+        if (getrlimit(resource, &limit) == 0 && limit.rlim_cur < memory)
+          memory = limit.rlim_cur;
+      }
     const std::size_t size = std::min(most, memory / 8);
 
     // What is larger than this has pages of its own, and is advised by those
@@ -51,14 +58,20 @@ namespace ACF
     mallopt(M_MMAP_THRESHOLD, largest_in_heap);
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
 
-    // The heap grows by more than is asked for, this once.
-    constexpr int usual_growth = 1 << 17;
-    char *const old_end        = static_cast<char *>(sbrk(0));
+    // The heap grows by more than is asked for, this once, when what was free
+    // in it does not suffice any more.
+    constexpr int usual_growth      = 1 << 17;
+    constexpr std::size_t some_size = 1 << 24;
+    void *some[64]                  = {};
+    char *const old_end             = static_cast<char *>(sbrk(0));
     mallopt(M_TOP_PAD, static_cast<int>(size));
-    void *volatile some = std::malloc(mallinfo2().keepcost + 1);
-    std::free(some);
+    for (void *&block : some)
+      if (sbrk(0) == old_end)
+        block = std::malloc(some_size);
     mallopt(M_TOP_PAD, usual_growth);
     char *const new_end = static_cast<char *>(sbrk(0));
+    for (void *const block : some)
+      std::free(block);
     if (new_end > old_end)
       advise_huge_pages(old_end, new_end - old_end);
 #endif

@@ -39,15 +39,18 @@ namespace ACF
         , x(terms.x.data())
       {}
 
+      // Two vectors of them.
+      template <typename Lanes>
       ACF_INLINE void
-      sixteen(const std::size_t i, Eight &first, Eight &second) const
+      evaluate(const std::size_t i, Lanes &first, Lanes &second) const
       {
-        first  = c[0] * load_lanes<Eight>(x[0] + i);
-        second = c[0] * load_lanes<Eight>(x[0] + i + 8);
+        constexpr unsigned int n = n_lanes<Lanes>;
+        first                    = c[0] * load_lanes<Lanes>(x[0] + i);
+        second                   = c[0] * load_lanes<Lanes>(x[0] + i + n);
         for (std::size_t k = 1; k < n_terms; ++k)
           {
-            first += c[k] * load_lanes<Eight>(x[k] + i);
-            second += c[k] * load_lanes<Eight>(x[k] + i + 8);
+            first += c[k] * load_lanes<Lanes>(x[k] + i);
+            second += c[k] * load_lanes<Lanes>(x[k] + i + n);
           }
       }
 
@@ -67,29 +70,20 @@ namespace ACF
 
 
 
-    ACF_INLINE double
-    sum_of(const Eight &x)
-    {
-      double sum = 0;
-      for (unsigned int lane = 0; lane < 8; ++lane)
-        sum += x[lane];
-      return sum;
-    }
-
-
-
     struct Store
     {
+      template <typename Lanes>
       ACF_INLINE void
-      operator()() const
+      run() const
       {
-        std::size_t i = begin;
-        for (; i + 16 <= end; i += 16)
+        constexpr unsigned int n = n_lanes<Lanes>;
+        std::size_t i            = begin;
+        for (; i + 2 * n <= end; i += 2 * n)
           {
-            Eight first, second;
-            combination.sixteen(i, first, second);
+            Lanes first, second;
+            combination.evaluate(i, first, second);
             store_lanes(first, y + i);
-            store_lanes(second, y + i + 8);
+            store_lanes(second, y + i + n);
           }
         for (; i < end; ++i)
           y[i] = combination.one(i);
@@ -105,19 +99,21 @@ namespace ACF
     // Adds the square of the combination.
     struct AddSquare
     {
+      template <typename Lanes>
       ACF_INLINE void
-      operator()() const
+      run() const
       {
-        Eight squares[2] = {};
-        std::size_t i    = begin;
-        for (; i + 16 <= end; i += 16)
+        constexpr unsigned int n = n_lanes<Lanes>;
+        Lanes squares[2]         = {};
+        std::size_t i            = begin;
+        for (; i + 2 * n <= end; i += 2 * n)
           {
-            Eight first, second;
-            combination.sixteen(i, first, second);
+            Lanes first, second;
+            combination.evaluate(i, first, second);
             squares[0] += first * first;
             squares[1] += second * second;
           }
-        total += sum_of(squares[0] + squares[1]);
+        total += sum_of_lanes(squares[0] + squares[1]);
         for (; i < end; ++i)
           {
             const double y = combination.one(i);
@@ -137,25 +133,27 @@ namespace ACF
     template <unsigned int n_vectors>
     struct StoreAndMultiply
     {
+      template <typename Lanes>
       ACF_INLINE void
-      operator()() const
+      run() const
       {
-        Eight sums[n_vectors + 1] = {};
+        constexpr unsigned int n  = n_lanes<Lanes>;
+        Lanes sums[n_vectors + 1] = {};
         std::size_t i             = begin;
-        for (; i + 16 <= end; i += 16)
+        for (; i + 2 * n <= end; i += 2 * n)
           {
-            Eight first, second;
-            combination.sixteen(i, first, second);
+            Lanes first, second;
+            combination.evaluate(i, first, second);
             store_lanes(first, y + i);
-            store_lanes(second, y + i + 8);
+            store_lanes(second, y + i + n);
             sums[0] += first * first + second * second;
             ACF_UNROLL
             for (unsigned int k = 0; k < n_vectors; ++k)
-              sums[k + 1] += first * load_lanes<Eight>(z[k] + i) +
-                             second * load_lanes<Eight>(z[k] + i + 8);
+              sums[k + 1] += first * load_lanes<Lanes>(z[k] + i) +
+                             second * load_lanes<Lanes>(z[k] + i + n);
           }
         for (unsigned int k = 0; k <= n_vectors; ++k)
-          products[k] += sum_of(sums[k]);
+          products[k] += sum_of_lanes(sums[k]);
         for (; i < end; ++i)
           {
             y[i] = combination.one(i);
@@ -211,13 +209,12 @@ namespace ACF
                [&](const std::size_t begin, const std::size_t end) {
                  Sums sums;
                  sums.values.resize(n_vectors + 1);
-                 run_vectorized(
-                   StoreAndMultiply<n_vectors>{combination,
-                                               y.begin(),
-                                               vectors.data(),
-                                               begin,
-                                               end,
-                                               sums.values.data()});
+                 run_in_lanes(StoreAndMultiply<n_vectors>{combination,
+                                                          y.begin(),
+                                                          vectors.data(),
+                                                          begin,
+                                                          end,
+                                                          sums.values.data()});
                  return sums;
                })
         .values;
@@ -232,7 +229,7 @@ namespace ACF
     set_size(terms, y);
     const Terms all(terms);
     run_ranges(y.size(), [&](const std::size_t begin, const std::size_t end) {
-      run_vectorized(Store{Combination(all), y.begin(), begin, end});
+      run_in_lanes(Store{Combination(all), y.begin(), begin, end});
     });
   }
 
@@ -278,7 +275,7 @@ namespace ACF
       terms.front().vector->size(),
       [&](const std::size_t begin, const std::size_t end) {
         double total = 0;
-        run_vectorized(AddSquare{Combination(all), begin, end, total});
+        run_in_lanes(AddSquare{Combination(all), begin, end, total});
         return total;
       });
   }

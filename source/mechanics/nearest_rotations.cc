@@ -13,18 +13,24 @@ namespace ACF
 {
   namespace
   {
-    typedef long long EightTruths __attribute__((vector_size(64)));
+    // Nodes that are handed over at once.
+    constexpr unsigned int batch_size = 8;
 
-    constexpr unsigned int n_lanes = 8;
+    template <typename Lanes>
+    struct Truths
+    {
+      typedef long long type __attribute__((vector_size(sizeof(Lanes))));
+    };
 
 
 
+    template <typename Lanes>
     ACF_INLINE bool
-    is_any(const EightTruths &truths)
+    is_any(const typename Truths<Lanes>::type &truths)
     {
       long long any = 0;
       ACF_UNROLL
-      for (unsigned int i = 0; i < n_lanes; ++i)
+      for (unsigned int i = 0; i < n_lanes<Lanes>; ++i)
         any |= truths[i];
       return any != 0;
     }
@@ -32,8 +38,9 @@ namespace ACF
 
 
     // C with R^-1 = C^T / determinant. @return the determinant
-    ACF_INLINE Eight
-    cofactors(const Eight (&R)[dim][dim], Eight (&C)[dim][dim])
+    template <typename Lanes>
+    ACF_INLINE Lanes
+    cofactors(const Lanes (&R)[dim][dim], Lanes (&C)[dim][dim])
     {
       ACF_UNROLL
       for (unsigned int i = 0; i < dim; ++i)
@@ -51,37 +58,40 @@ namespace ACF
 
 
 
-    // nearest_rotation() of eight matrices, entry by entry. A matrix does not
+    // nearest_rotation() of some matrices, entry by entry. A matrix does not
     // change any more when its own iteration has ended.
     // @return which have a rotation
-    ACF_INLINE EightTruths
-    iterate(Eight (&R)[dim][dim])
+    template <typename Lanes>
+    ACF_INLINE typename Truths<Lanes>::type
+    iterate(Lanes (&R)[dim][dim])
     {
+      using LaneTruths                      = typename Truths<Lanes>::type;
       constexpr unsigned int max_iterations = 40;
       constexpr double largest = std::numeric_limits<double>::max();
-      Eight C[dim][dim];
-      Eight determinant    = cofactors(R, C);
-      EightTruths is_found = {};
-      EightTruths goes_on  = (determinant > 0.) & (determinant <= largest);
-      for (unsigned int step = 0; step < max_iterations && is_any(goes_on);
+      Lanes C[dim][dim];
+      Lanes determinant   = cofactors(R, C);
+      LaneTruths is_found = {};
+      LaneTruths goes_on  = (determinant > 0.) & (determinant <= largest);
+      for (unsigned int step = 0;
+           step < max_iterations && is_any<Lanes>(goes_on);
            ++step)
         {
-          const Eight half_inverse = 0.5 / determinant;
-          Eight change             = {};
+          const Lanes half_inverse = 0.5 / determinant;
+          Lanes change             = {};
           ACF_UNROLL
           for (unsigned int i = 0; i < dim; ++i)
             {
               ACF_UNROLL
               for (unsigned int j = 0; j < dim; ++j)
                 {
-                  const Eight next = 0.5 * R[i][j] + half_inverse * C[i][j];
-                  const Eight difference = next - R[i][j];
+                  const Lanes next = 0.5 * R[i][j] + half_inverse * C[i][j];
+                  const Lanes difference = next - R[i][j];
                   change += difference * difference;
                   R[i][j] = goes_on ? next : R[i][j];
                 }
             }
           // quadratic: the next change is of the order of this one squared
-          const EightTruths is_small = goes_on & (change < 1e-16);
+          const LaneTruths is_small = goes_on & (change < 1e-16);
           is_found |= is_small;
           goes_on &= ~is_small;
           determinant = cofactors(R, C);
@@ -91,19 +101,20 @@ namespace ACF
 
 
 
-    // Of at most eight nodes.
+    // Of at most as many nodes as there are lanes.
+    template <typename Lanes>
     ACF_INLINE void
-    find_rotations(const Matrix3 *const gradients,
-                   const unsigned int n,
-                   const Matrix3 &fallback,
-                   Matrix3 *const rotations)
+    find_some(const Matrix3 *const gradients,
+              const unsigned int n,
+              const Matrix3 &fallback,
+              Matrix3 *const rotations)
     {
-      Eight R[dim][dim];
-      for (unsigned int lane = 0; lane < n_lanes; ++lane)
+      Lanes R[dim][dim];
+      for (unsigned int lane = 0; lane < n_lanes<Lanes>; ++lane)
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
             R[i][j][lane] = gradients[std::min(lane, n - 1)][i][j];
-      const EightTruths is_found = iterate(R);
+      const auto is_found = iterate(R);
       for (unsigned int lane = 0; lane < n; ++lane)
         for (unsigned int i = 0; i < dim; ++i)
           for (unsigned int j = 0; j < dim; ++j)
@@ -111,22 +122,36 @@ namespace ACF
               is_found[lane] != 0 ? R[i][j][lane] : fallback[i][j];
     }
 
+    template <typename Lanes>
+    ACF_INLINE void
+    find_rotations(const Matrix3 *const gradients,
+                   const unsigned int n,
+                   const Matrix3 &fallback,
+                   Matrix3 *const rotations)
+    {
+      for (unsigned int k = 0; k < n; k += n_lanes<Lanes>)
+        find_some<Lanes>(gradients + k,
+                         std::min(n - k, n_lanes<Lanes>),
+                         fallback,
+                         rotations + k);
+    }
+
 
 
     // One function per instruction set.
-#define ACF_ROTATIONS(name, attributes)                       \
+#define ACF_ROTATIONS(name, attributes, Lanes)                \
   attributes void find_##name(const Matrix3 *const gradients, \
                               const unsigned int n,           \
                               const Matrix3 &fallback,        \
                               Matrix3 *const rotations)       \
   {                                                           \
-    find_rotations(gradients, n, fallback, rotations);        \
+    find_rotations<Lanes>(gradients, n, fallback, rotations); \
   }
 
-    ACF_ROTATIONS(any, )
+    ACF_ROTATIONS(any, , Two)
 #if defined(__x86_64__)
-    ACF_ROTATIONS(avx2, ACF_AVX2)
-    ACF_ROTATIONS(avx512, ACF_AVX512)
+    ACF_ROTATIONS(avx2, ACF_AVX2, Four)
+    ACF_ROTATIONS(avx512, ACF_AVX512, Eight)
 #endif
 #undef ACF_ROTATIONS
 
@@ -159,17 +184,17 @@ namespace ACF
     const FindRotations find = present_function();
     const std::size_t n      = gradients.size();
     std::vector<Matrix3> rotations(n);
-    run_ranges((n + n_lanes - 1) / n_lanes,
+    run_ranges((n + batch_size - 1) / batch_size,
                [&](const std::size_t begin, const std::size_t end) {
-                 for (std::size_t k = begin * n_lanes;
-                      k < std::min(end * n_lanes, n);
-                      k += n_lanes)
+                 for (std::size_t k = begin * batch_size;
+                      k < std::min(end * batch_size, n);
+                      k += batch_size)
                    find(&gradients[k],
-                        std::min<std::size_t>(n_lanes, n - k),
+                        std::min<std::size_t>(batch_size, n - k),
                         fallback,
                         &rotations[k]);
                },
-               smallest_range / n_lanes);
+               smallest_range / batch_size);
     return rotations;
   }
 } // namespace ACF

@@ -205,8 +205,9 @@ namespace ACF
 
 
 
-    // y needs no values: it becomes zero node by node, when it is reached.
-    template <unsigned int n, typename Entry>
+    // y needs no values: it becomes zero node by node, when it is reached. Two
+    // vectors are taken at once where there are registers for them.
+    template <unsigned int n, typename Entry, unsigned int n_bytes>
     ACF_INLINE void
     multiply_entries(const Rows &rows)
     {
@@ -219,10 +220,13 @@ namespace ACF
               for (unsigned int v = 0; v < n; ++v)
                 store_lanes(Four{}, rows.y + 4 * (n * (reach & rows.mask) + v));
             }
-          if constexpr (n >= 2)
+          constexpr bool in_pairs     = n_bytes >= sizeof(Eight);
+          constexpr unsigned int done = in_pairs ? n / 2 * 2 : 0;
+          if constexpr (done > 0)
             multiply_row<n, Entry, Eight>(rows, a, 0);
-          if constexpr (n % 2 == 1)
-            multiply_row<n, Entry, Four>(rows, a, 4 * (n - 1));
+          ACF_UNROLL
+          for (unsigned int v = done; v < n; ++v)
+            multiply_row<n, Entry, Four>(rows, a, 4 * v);
         }
     }
 
@@ -233,7 +237,7 @@ namespace ACF
   template <unsigned int n, typename Entry>         \
   attributes void multiply_##name(const Rows &rows) \
   {                                                 \
-    multiply_entries<n, Entry>(rows);               \
+    multiply_entries<n, Entry, name##_bytes>(rows); \
   }
 
     ACF_PRODUCTS(any, )

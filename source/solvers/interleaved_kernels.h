@@ -44,10 +44,14 @@ namespace ACF
 
 
 
-    template <typename Real, unsigned int n_planes, unsigned int width>
+    // Of as many right-hand sides as a vector of the instruction set has lanes.
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int n_bytes,
+              unsigned int width>
     struct InterleavedPanel
     {
-      using Vector  = typename Vectors<Real>::type;
+      using Vector  = typename Vectors<Real, n_bytes>::type;
       using Columns = PanelColumns<Real, n_planes, width, Vector>;
       static constexpr unsigned int node_size = interleaved_node<n_planes>;
 
@@ -210,46 +214,74 @@ namespace ACF
 
 
 
+    /** Some of the right-hand sides, from one on. */
+    template <typename Real>
+    ACF_INLINE InterleavedRows<Real>
+    starting_at(const InterleavedRows<Real> &rows, const unsigned int vector)
+    {
+      InterleavedRows<Real> result = rows;
+      result.own += vector;
+      result.first += vector;
+      result.others += vector;
+      return result;
+    }
+
+
+
     /** As forward() with Work. */
-    template <typename Real, unsigned int n_planes>
+    template <typename Real, unsigned int n_planes, unsigned int n_bytes>
     ACF_INLINE void
     forward(const SupernodeView<Real> &s, const InterleavedRows<Real> &rows)
     {
-      const Real *values = s.values;
-      unsigned int j     = 0;
+      constexpr unsigned int n_at_once = Vectors<Real, n_bytes>::width;
+      const Real *values               = s.values;
+      unsigned int j                   = 0;
       for (; j + panel_width <= s.n_columns; j += panel_width)
         {
-          InterleavedPanel<Real, n_planes, panel_width>(values, j).forward(
-            s.n_columns, rows);
+          ACF_UNROLL
+          for (unsigned int v = 0; v < lanes; v += n_at_once)
+            InterleavedPanel<Real, n_planes, n_bytes, panel_width>(values, j)
+              .forward(s.n_columns, starting_at(rows, v));
           values += panel_size(j, panel_width, s.n_rows, n_planes);
         }
       if (j < s.n_columns)
-        InterleavedPanel<Real, n_planes, panel_width / 2>(values, j).forward(
-          s.n_columns, rows);
+        {
+          ACF_UNROLL
+          for (unsigned int v = 0; v < lanes; v += n_at_once)
+            InterleavedPanel<Real, n_planes, n_bytes, panel_width / 2>(values,
+                                                                       j)
+              .forward(s.n_columns, starting_at(rows, v));
+        }
     }
 
 
 
     /** As backward() with Work; all rows below are in the first array. */
-    template <typename Real, unsigned int n_planes>
+    template <typename Real, unsigned int n_planes, unsigned int n_bytes>
     ACF_INLINE void
     backward(const SupernodeView<Real> &s, const InterleavedRows<Real> &rows)
     {
-      const Real *values = s.values + s.n_values;
-      unsigned int j     = s.n_columns;
+      constexpr unsigned int n_at_once = Vectors<Real, n_bytes>::width;
+      const Real *values               = s.values + s.n_values;
+      unsigned int j                   = s.n_columns;
       if (j % panel_width != 0)
         {
           j -= panel_width / 2;
           values -= panel_size(j, panel_width / 2, s.n_rows, n_planes);
-          InterleavedPanel<Real, n_planes, panel_width / 2>(values, j).backward(
-            s.n_columns, rows);
+          ACF_UNROLL
+          for (unsigned int v = 0; v < lanes; v += n_at_once)
+            InterleavedPanel<Real, n_planes, n_bytes, panel_width / 2>(values,
+                                                                       j)
+              .backward(s.n_columns, starting_at(rows, v));
         }
       while (j > 0)
         {
           j -= panel_width;
           values -= panel_size(j, panel_width, s.n_rows, n_planes);
-          InterleavedPanel<Real, n_planes, panel_width>(values, j).backward(
-            s.n_columns, rows);
+          ACF_UNROLL
+          for (unsigned int v = 0; v < lanes; v += n_at_once)
+            InterleavedPanel<Real, n_planes, n_bytes, panel_width>(values, j)
+              .backward(s.n_columns, starting_at(rows, v));
         }
     }
   } // namespace Kernels

@@ -11,22 +11,50 @@ namespace ACF
 {
   namespace
   {
-    typedef float EightSingle __attribute__((vector_size(32)));
-
     // Numbers of each column that are side by side: a line of the cache in
     // single precision.
     constexpr std::size_t block_size = 16;
 
-    ACF_INLINE Eight
+    template <unsigned int n>
+    struct Singles
+    {
+      typedef float type __attribute__((vector_size(n * sizeof(float))));
+    };
+
+    template <typename Lanes>
+    ACF_INLINE Lanes
     load(const float *const p)
     {
-      return __builtin_convertvector(load_lanes<EightSingle>(p), Eight);
+      using Vector = typename Singles<n_lanes<Lanes>>::type;
+      return __builtin_convertvector(load_lanes<Vector>(p), Lanes);
+    }
+
+    template <typename Lanes>
+    ACF_INLINE Lanes
+    load(const double *const p)
+    {
+      return load_lanes<Lanes>(p);
+    }
+
+
+
+    // Real and imaginary parts of complex numbers change places.
+    ACF_INLINE Two
+    swap_parts(const Two &x)
+    {
+      return __builtin_shufflevector(x, x, 1, 0);
+    }
+
+    ACF_INLINE Four
+    swap_parts(const Four &x)
+    {
+      return __builtin_shufflevector(x, x, 1, 0, 3, 2);
     }
 
     ACF_INLINE Eight
-    load(const double *const p)
+    swap_parts(const Eight &x)
     {
-      return load_lanes<Eight>(p);
+      return __builtin_shufflevector(x, x, 1, 0, 3, 2, 5, 4, 7, 6);
     }
 
 
@@ -35,55 +63,56 @@ namespace ACF
     template <typename Real, bool is_complex>
     struct SubtractProduct
     {
+      template <typename Lanes>
       ACF_INLINE void
-      operator()() const
+      run() const
       {
         for (std::size_t block = begin; block < end; ++block)
           {
             const std::size_t first = block * block_size;
             if (first + block_size <= n)
-              subtract(block, x + first);
+              subtract<Lanes>(block, x + first);
             else
               {
                 double rest[block_size] = {};
                 for (std::size_t i = first; i < n; ++i)
                   rest[i - first] = x[i];
-                subtract(block, rest);
+                subtract<Lanes>(block, rest);
                 for (std::size_t i = first; i < n; ++i)
                   x[i] = rest[i - first];
               }
           }
       }
 
+      template <typename Lanes>
       ACF_INLINE void
       subtract(const std::size_t block, double *const x_block) const
       {
+        constexpr unsigned int width    = n_lanes<Lanes>;
+        constexpr unsigned int n_pieces = block_size / width;
         // products with the real and the imaginary parts of F
-        Eight real[2] = {}, imaginary[2] = {};
+        Lanes real[n_pieces] = {}, imaginary[n_pieces] = {};
         const Real *y = values + block * n_columns * block_size;
         for (std::size_t k = 0; k < n_columns; ++k, y += block_size)
           {
             ACF_UNROLL
-            for (unsigned int half = 0; half < 2; ++half)
+            for (unsigned int piece = 0; piece < n_pieces; ++piece)
               {
-                const Eight y_half = load(y + 8 * half);
-                real[half] += factors[2 * k] * y_half;
+                const Lanes numbers = load<Lanes>(y + width * piece);
+                real[piece] += factors[2 * k] * numbers;
                 if (is_complex)
-                  imaginary[half] += factors[2 * k + 1] * y_half;
+                  imaginary[piece] += factors[2 * k + 1] * numbers;
               }
           }
+        Lanes signs;
+        for (unsigned int lane = 0; lane < width; ++lane)
+          signs[lane] = lane % 2 == 0 ? -1 : 1;
         ACF_UNROLL
-        for (unsigned int half = 0; half < 2; ++half)
+        for (unsigned int piece = 0; piece < n_pieces; ++piece)
           {
             if (is_complex)
-              {
-                const Eight signs{-1, 1, -1, 1, -1, 1, -1, 1};
-                real[half] +=
-                  signs *
-                  __builtin_shufflevector(
-                    imaginary[half], imaginary[half], 1, 0, 3, 2, 5, 4, 7, 6);
-              }
-            add_lanes(-real[half], x_block + 8 * half);
+              real[piece] += signs * swap_parts(imaginary[piece]);
+            add_lanes(-real[piece], x_block + width * piece);
           }
       }
 
@@ -124,7 +153,7 @@ namespace ACF
       run_ranges(
         n_blocks,
         [&](const std::size_t begin, const std::size_t end) {
-          run_vectorized(SubtractProduct<Real, (n_parts<Number> > 1)>{
+          run_in_lanes(SubtractProduct<Real, (n_parts<Number> > 1)>{
             values.data(),
             static_cast<std::size_t>(F.size()),
             factors.data(),

@@ -31,40 +31,37 @@ namespace ACF
     /** Two nodes. */
     constexpr unsigned int panel_width = 6;
 
-    template <typename Real>
-    struct Vectors;
-
-    template <>
-    struct Vectors<double>
+    /**
+     * Vectors of the instruction set, of at most eight numbers: what is stored
+     * as a vector of eight may be several of them.
+     * @tparam n_bytes of the registers
+     */
+    template <typename Real, unsigned int n_bytes>
+    struct Vectors
     {
-      typedef double type __attribute__((vector_size(lanes * sizeof(double))));
-      typedef double half
-        __attribute__((vector_size(lanes / 2 * sizeof(double))));
-      typedef double quarter
-        __attribute__((vector_size(lanes / 4 * sizeof(double))));
+      static constexpr unsigned int width =
+        n_bytes / sizeof(Real) < lanes ? n_bytes / sizeof(Real) : lanes;
+      typedef Real type __attribute__((vector_size(width * sizeof(Real))));
     };
 
-    template <>
-    struct Vectors<float>
-    {
-      typedef float type __attribute__((vector_size(lanes * sizeof(float))));
-      typedef float half
-        __attribute__((vector_size(lanes / 2 * sizeof(float))));
-      typedef float quarter
-        __attribute__((vector_size(lanes / 4 * sizeof(float))));
-    };
-
-    template <typename Real>
+    template <typename Real, unsigned int width, typename Vector>
     ACF_INLINE Real
-    sum_of_lanes(const typename Vectors<Real>::type &x)
+    sum_of_lanes(const Vector &x)
     {
-      const typename Vectors<Real>::half halves =
-        __builtin_shufflevector(x, x, 0, 1, 2, 3) +
-        __builtin_shufflevector(x, x, 4, 5, 6, 7);
-      const typename Vectors<Real>::quarter quarters =
-        __builtin_shufflevector(halves, halves, 0, 1) +
-        __builtin_shufflevector(halves, halves, 2, 3);
-      return quarters[0] + quarters[1];
+      if constexpr (width == 2)
+        return x[0] + x[1];
+      else
+        {
+          typedef Real Half __attribute__((vector_size(sizeof(Vector) / 2)));
+          Half sum;
+          if constexpr (width == 8)
+            sum = __builtin_shufflevector(x, x, 0, 1, 2, 3) +
+                  __builtin_shufflevector(x, x, 4, 5, 6, 7);
+          else
+            sum = __builtin_shufflevector(x, x, 0, 1) +
+                  __builtin_shufflevector(x, x, 2, 3);
+          return sum_of_lanes<Real, width / 2>(sum);
+        }
     }
 
     constexpr std::size_t
@@ -238,6 +235,7 @@ namespace ACF
     template <typename Real,
               unsigned int n_planes,
               unsigned int n_vectors,
+              unsigned int n_bytes,
               unsigned int width>
     ACF_INLINE void
     forward_panel(const Real *values,
@@ -245,7 +243,8 @@ namespace ACF
                   const unsigned int n_rows,
                   const Work<Real> &t)
     {
-      using Vector = typename Vectors<Real>::type;
+      using Vector = typename Vectors<Real, n_bytes>::type;
+      constexpr unsigned int n_rows_at_once = Vectors<Real, n_bytes>::width;
 
       PanelColumns<Real, n_planes, width> columns[n_vectors];
       ACF_UNROLL
@@ -255,26 +254,34 @@ namespace ACF
           columns[v].solve(values);
           columns[v].write(t, v, j);
         }
-      const Vector *L = reinterpret_cast<const Vector *>(
-        values + triangle_size(width, n_planes));
+      const Real *L = values + triangle_size(width, n_planes);
       for (unsigned int row = first_vector_row(j, width); row < n_rows;
-           row += lanes, L += width * n_planes)
+           row += lanes, L += width * n_planes * lanes)
         {
           ACF_UNROLL
           for (unsigned int v = 0; v < n_vectors; ++v)
             {
-              Vector sum[n_planes];
-              for (unsigned int p = 0; p < n_planes; ++p)
-                sum[p] = *reinterpret_cast<const Vector *>(
-                  t.template plane<n_planes>(v, p) + row);
               ACF_UNROLL
-              for (unsigned int c = 0; c < width; ++c)
-                multiply_add<-1, n_planes>(sum,
-                                           L + c * n_planes,
-                                           columns[v].x[c]);
-              for (unsigned int p = 0; p < n_planes; ++p)
-                *reinterpret_cast<Vector *>(t.template plane<n_planes>(v, p) +
-                                            row) = sum[p];
+              for (unsigned int i = 0; i < lanes; i += n_rows_at_once)
+                {
+                  Vector sum[n_planes];
+                  for (unsigned int p = 0; p < n_planes; ++p)
+                    sum[p] = *reinterpret_cast<const Vector *>(
+                      t.template plane<n_planes>(v, p) + row + i);
+                  ACF_UNROLL
+                  for (unsigned int c = 0; c < width; ++c)
+                    {
+                      Vector b[n_planes];
+                      ACF_UNROLL
+                      for (unsigned int p = 0; p < n_planes; ++p)
+                        b[p] = *reinterpret_cast<const Vector *>(
+                          L + (c * n_planes + p) * lanes + i);
+                      multiply_add<-1, n_planes>(sum, b, columns[v].x[c]);
+                    }
+                  for (unsigned int p = 0; p < n_planes; ++p)
+                    *reinterpret_cast<Vector *>(
+                      t.template plane<n_planes>(v, p) + row + i) = sum[p];
+                }
             }
         }
     }
@@ -284,6 +291,7 @@ namespace ACF
     template <typename Real,
               unsigned int n_planes,
               unsigned int n_vectors,
+              unsigned int n_bytes,
               unsigned int width>
     ACF_INLINE void
     backward_panel(const Real *values,
@@ -291,11 +299,11 @@ namespace ACF
                    const unsigned int n_rows,
                    const Work<Real> &t)
     {
-      using Vector = typename Vectors<Real>::type;
+      using Vector = typename Vectors<Real, n_bytes>::type;
+      constexpr unsigned int n_rows_at_once = Vectors<Real, n_bytes>::width;
 
-      const Vector *const L = reinterpret_cast<const Vector *>(
-        values + triangle_size(width, n_planes));
-      const unsigned int first         = first_vector_row(j, width);
+      const Real *const L      = values + triangle_size(width, n_planes);
+      const unsigned int first = first_vector_row(j, width);
       const unsigned int n_row_vectors = (round_up(n_rows) - first) / lanes;
       for (unsigned int v = 0; v < n_vectors; ++v)
         {
@@ -311,22 +319,28 @@ namespace ACF
           // fetches in advance what is read in one direction.
           for (unsigned int k = n_row_vectors; k-- > 0;)
             {
-              const unsigned int row    = first + lanes * k;
-              const Vector *const entry = L + k * width * n_planes;
-              Vector x[n_planes];
-              for (unsigned int p = 0; p < n_planes; ++p)
-                x[p] = *reinterpret_cast<const Vector *>(
-                  t.template plane<n_planes>(v, p) + row);
               ACF_UNROLL
-              for (unsigned int c = width; c > 0; --c)
+              for (unsigned int i = 0; i < lanes; i += n_rows_at_once)
                 {
-                  Vector b[n_planes];
+                  const unsigned int row = first + lanes * k + i;
+                  const Real *const entry =
+                    L + k * width * n_planes * lanes + i;
+                  Vector x[n_planes];
+                  for (unsigned int p = 0; p < n_planes; ++p)
+                    x[p] = *reinterpret_cast<const Vector *>(
+                      t.template plane<n_planes>(v, p) + row);
                   ACF_UNROLL
-                  for (unsigned int p = n_planes; p > 0; --p)
-                    b[p - 1] = entry[(c - 1) * n_planes + p - 1];
-                  // or the compiler reads in another order
-                  std::atomic_signal_fence(std::memory_order_acq_rel);
-                  multiply_add<1, n_planes>(sum[c - 1], b, x);
+                  for (unsigned int c = width; c > 0; --c)
+                    {
+                      Vector b[n_planes];
+                      ACF_UNROLL
+                      for (unsigned int p = n_planes; p > 0; --p)
+                        b[p - 1] = *reinterpret_cast<const Vector *>(
+                          entry + ((c - 1) * n_planes + p - 1) * lanes);
+                      // or the compiler reads in another order
+                      std::atomic_signal_fence(std::memory_order_acq_rel);
+                      multiply_add<1, n_planes>(sum[c - 1], b, x);
+                    }
                 }
             }
           PanelColumns<Real, n_planes, width> columns;
@@ -337,7 +351,7 @@ namespace ACF
               Real total[n_planes];
               ACF_UNROLL
               for (unsigned int p = 0; p < n_planes; ++p)
-                total[p] = -sum_of_lanes<Real>(sum[c][p]);
+                total[p] = -sum_of_lanes<Real, n_rows_at_once>(sum[c][p]);
               // 1 / D
               multiply_add<1, n_planes>(total,
                                         values + c * n_planes,
@@ -354,7 +368,10 @@ namespace ACF
 
 
     /** t <- L^-1 t for the columns of a supernode, and t -= L t below. */
-    template <typename Real, unsigned int n_planes, unsigned int n_vectors>
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int n_vectors,
+              unsigned int n_bytes>
     ACF_INLINE void
     forward(const SupernodeView<Real> &s, const Work<Real> &t)
     {
@@ -362,23 +379,22 @@ namespace ACF
       unsigned int j     = 0;
       for (; j + panel_width <= s.n_columns; j += panel_width)
         {
-          forward_panel<Real, n_planes, n_vectors, panel_width>(values,
-                                                                j,
-                                                                s.n_rows,
-                                                                t);
+          forward_panel<Real, n_planes, n_vectors, n_bytes, panel_width>(
+            values, j, s.n_rows, t);
           values += panel_size(j, panel_width, s.n_rows, n_planes);
         }
       if (j < s.n_columns)
-        forward_panel<Real, n_planes, n_vectors, panel_width / 2>(values,
-                                                                  j,
-                                                                  s.n_rows,
-                                                                  t);
+        forward_panel<Real, n_planes, n_vectors, n_bytes, panel_width / 2>(
+          values, j, s.n_rows, t);
     }
 
 
 
     /** t <- L^-T (D^-1 t - L^T t) with the rows below. */
-    template <typename Real, unsigned int n_planes, unsigned int n_vectors>
+    template <typename Real,
+              unsigned int n_planes,
+              unsigned int n_vectors,
+              unsigned int n_bytes>
     ACF_INLINE void
     backward(const SupernodeView<Real> &s, const Work<Real> &t)
     {
@@ -388,19 +404,15 @@ namespace ACF
         {
           j -= panel_width / 2;
           values -= panel_size(j, panel_width / 2, s.n_rows, n_planes);
-          backward_panel<Real, n_planes, n_vectors, panel_width / 2>(values,
-                                                                     j,
-                                                                     s.n_rows,
-                                                                     t);
+          backward_panel<Real, n_planes, n_vectors, n_bytes, panel_width / 2>(
+            values, j, s.n_rows, t);
         }
       while (j > 0)
         {
           j -= panel_width;
           values -= panel_size(j, panel_width, s.n_rows, n_planes);
-          backward_panel<Real, n_planes, n_vectors, panel_width>(values,
-                                                                 j,
-                                                                 s.n_rows,
-                                                                 t);
+          backward_panel<Real, n_planes, n_vectors, n_bytes, panel_width>(
+            values, j, s.n_rows, t);
         }
     }
   } // namespace Kernels

@@ -48,25 +48,25 @@ namespace ACF
   attributes void forward_##name(const Kernels::SupernodeView<Real> &s,    \
                                  const Kernels::Work<Real> &t)             \
   {                                                                        \
-    Kernels::forward<Real, planes, n_vectors>(s, t);                       \
+    Kernels::forward<Real, planes, n_vectors, name##_bytes>(s, t);         \
   }                                                                        \
   template <typename Real, unsigned int planes, unsigned int n_vectors>    \
   attributes void backward_##name(const Kernels::SupernodeView<Real> &s,   \
                                   const Kernels::Work<Real> &t)            \
   {                                                                        \
-    Kernels::backward<Real, planes, n_vectors>(s, t);                      \
+    Kernels::backward<Real, planes, n_vectors, name##_bytes>(s, t);        \
   }                                                                        \
   template <typename Real, unsigned int planes>                            \
   attributes void forward_##name(const Kernels::SupernodeView<Real> &s,    \
                                  const Kernels::InterleavedRows<Real> &t)  \
   {                                                                        \
-    Kernels::forward<Real, planes>(s, t);                                  \
+    Kernels::forward<Real, planes, name##_bytes>(s, t);                    \
   }                                                                        \
   template <typename Real, unsigned int planes>                            \
   attributes void backward_##name(const Kernels::SupernodeView<Real> &s,   \
                                   const Kernels::InterleavedRows<Real> &t) \
   {                                                                        \
-    Kernels::backward<Real, planes>(s, t);                                 \
+    Kernels::backward<Real, planes, name##_bytes>(s, t);                   \
   }
 
     ACF_SOLVES(any, )
@@ -147,18 +147,20 @@ namespace ACF
     // The largest absolute value of n numbers.
     struct LargestValue
     {
+      template <typename Lanes>
       ACF_INLINE void
-      operator()() const
+      run() const
       {
-        Eight largest = {};
-        std::size_t k = 0;
-        for (; k + 8 <= n; k += 8)
+        constexpr unsigned int width = n_lanes<Lanes>;
+        Lanes largest                = {};
+        std::size_t k                = 0;
+        for (; k + width <= n; k += width)
           {
-            const Eight value = load_lanes<Eight>(x + k);
-            const Eight size  = value < Eight{} ? -value : value;
+            const Lanes value = load_lanes<Lanes>(x + k);
+            const Lanes size  = value < Lanes{} ? -value : value;
             largest           = size > largest ? size : largest;
           }
-        for (unsigned int i = 0; i < 8; ++i)
+        for (unsigned int i = 0; i < width; ++i)
           result = largest[i] > result ? largest[i] : result;
         for (; k < n; ++k)
           {
@@ -182,7 +184,7 @@ namespace ACF
     {
       double size = 0;
       if (std::is_same<Real, float>::value)
-        run_vectorized(
+        run_in_lanes(
           LargestValue{&plane(vector[0], 0), n_planes<Number> * n, size});
       // the inverse of what is too small would be infinite
       return size >= std::numeric_limits<double>::min() ? size : 1;

@@ -6,11 +6,13 @@
 // assembly, factorisation and step, the share of the solves with the cached
 // factor, and in the same run the ratios of the paper's real one-step matrices
 // to the diagonalised ones and of the strain of Green and Lagrange to the
-// reduced one. Times are medians of three runs.
+// reduced one, and of shorter vector instructions to those of the processor.
+// Times are medians of three runs.
 //
 // Usage: step_cost [--quick]
 
 #include <acf/base/huge_pages.h>
+#include <acf/base/processor.h>
 
 #include <mpi.h>
 
@@ -92,7 +94,10 @@ main(int argc, char **argv)
                "one-step: step relative to diagonalized,"
                "one-step: iterations per step,"
                "Green-Lagrange: step relative to reduced,"
-               "Green-Lagrange: iterations per step,peak memory [B]"
+               "Green-Lagrange: iterations per step,"
+               "AVX2: step relative to best instructions,"
+               "without AVX: step relative to best instructions,"
+               "peak memory [B]"
             << std::endl;
   for (const auto &cells : meshes)
     {
@@ -102,6 +107,15 @@ main(int argc, char **argv)
         measure(cells, n_steps, "Time integration/Stage matrices=one-step");
       const Cost full =
         measure(cells, n_steps, "Bodies/pendulum/Strain=Green-Lagrange");
+      const auto with_at_most = [&](const Processor processor) {
+        limit_processor(processor);
+        const Cost limited =
+          measure(cells, n_steps, "Bodies/pendulum/Strain=reduced");
+        limit_processor(Processor::avx512);
+        return limited;
+      };
+      const Cost avx2       = with_at_most(Processor::avx2);
+      const Cost any        = with_at_most(Processor::any);
       const auto iterations = [&](const Cost &c) {
         return 1. * c.statistics.newton_iterations / c.statistics.steps;
       };
@@ -115,7 +129,9 @@ main(int argc, char **argv)
                 << cost.step << ',' << iterations(cost) << ','
                 << cost.solves / cost.step << ',' << paper.step / cost.step
                 << ',' << iterations(paper) << ',' << full.step / cost.step
-                << ',' << iterations(full) << ',' << peak_memory() << std::endl;
+                << ',' << iterations(full) << ',' << avx2.step / cost.step
+                << ',' << any.step / cost.step << ',' << peak_memory()
+                << std::endl;
     }
   MPI_Finalize();
   return 0;

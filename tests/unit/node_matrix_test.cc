@@ -13,6 +13,7 @@
 #include <memory>
 #include <sstream>
 
+#include <unit/all_instructions.h>
 #include <unit/mechanics_test.h>
 
 using namespace ACF;
@@ -115,7 +116,7 @@ namespace
   }
 } // namespace
 
-TEST(NodeMatrix, ProductsWithSeveralVectorsAndThreads)
+TEST_WITH_ALL_INSTRUCTIONS(NodeMatrix, ProductsWithSeveralVectorsAndThreads)
 {
   const ThreadLimit threads;
   double error = 0;
@@ -162,7 +163,7 @@ TEST(NodeMatrix, ProductsWithSeveralVectorsAndThreads)
 
 // Windows on the nodes that some rows reach, which are smaller than the body,
 // and against the sum over all entries.
-TEST(NodeMatrix, RowsAndQuadraticForms)
+TEST_WITH_ALL_INSTRUCTIONS(NodeMatrix, RowsAndQuadraticForms)
 {
   const ThreadLimit threads;
   double error = 0, form_error = 0;
@@ -251,7 +252,7 @@ TEST(NodeMatrix, BlocksAndRowSums)
     }
 }
 
-TEST(LinearCombination, AnyNumberOfTermsAndProducts)
+TEST_WITH_ALL_INSTRUCTIONS(LinearCombination, AnyNumberOfTermsAndProducts)
 {
   const ThreadLimit threads;
   for (const unsigned int size : {1, 7, 8, 16, 1000, 20001})
@@ -294,7 +295,7 @@ TEST(LinearCombination, AnyNumberOfTermsAndProducts)
         }
 }
 
-TEST(DotProduct, AnySize)
+TEST_WITH_ALL_INSTRUCTIONS(DotProduct, AnySize)
 {
   const ThreadLimit threads;
   for (const unsigned int size : {0, 1, 7, 8, 31, 32, 1000, 20001})

@@ -4,6 +4,7 @@
 #include <acf/mechanics/green_lagrange.h>
 #include <acf/mechanics/rotation.h>
 
+#include <unit/all_instructions.h>
 #include <unit/reduced_strain_test.h>
 
 using namespace ACF;
@@ -38,7 +39,7 @@ TEST(NodeRotations, NearestRotationIsThatOfThePolarDecomposition)
 
 // In each place of a group of eight, beside others that take more or fewer
 // iterations or have no rotation; a number that eight does not divide.
-TEST(NodeRotations, NearestRotationsOfManyMatrices)
+TEST_WITH_ALL_INSTRUCTIONS(NodeRotations, NearestRotationsOfManyMatrices)
 {
   Random random;
   std::vector<Matrix3> gradients;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include <unit/all_instructions.h>
 #include <unit/reduced_strain_test.h>
 
 using namespace ACF;
@@ -210,7 +211,7 @@ TEST(ReducedStrain, MeansAndCoRotatedDisplacement)
       }
 }
 
-TEST(ReducedStrain, NodalMomentsAreLinear)
+TEST_WITH_ALL_INSTRUCTIONS(ReducedStrain, NodalMomentsAreLinear)
 {
   Random random;
   for (const Example &example : examples())
@@ -251,7 +252,7 @@ TEST(ReducedStrain, NodalMomentsAreLinear)
     }
 }
 
-TEST(ReducedStrain, ResidualsAtSeveralTimes)
+TEST_WITH_ALL_INSTRUCTIONS(ReducedStrain, ResidualsAtSeveralTimes)
 {
   Random random;
   double error = 0, largest_damping = 0;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <set>
 
+#include <unit/all_instructions.h>
 #include <unit/multibody_test.h>
 
 using namespace ACF;
@@ -159,7 +160,8 @@ compare_threads(const Number shift)
   EXPECT_EQ(solutions[1], solutions[2]); // to the last bit
 }
 
-TEST(SupernodalFactor, DoesNotDependOnThreadsAndNumberOfVectors)
+TEST_WITH_ALL_INSTRUCTIONS(SupernodalFactor,
+                           DoesNotDependOnThreadsAndNumberOfVectors)
 {
   compare_threads(1e6);
   compare_threads(shift);
@@ -167,7 +169,8 @@ TEST(SupernodalFactor, DoesNotDependOnThreadsAndNumberOfVectors)
 
 
 
-TEST(ShiftedFactorization, SinglePrecisionIsAsGoodAsItsContraction)
+TEST_WITH_ALL_INSTRUCTIONS(ShiftedFactorization,
+                           SinglePrecisionIsAsGoodAsItsContraction)
 {
   for (const std::string &mesh : {slender, bulky})
     {

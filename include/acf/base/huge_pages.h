@@ -22,11 +22,11 @@ namespace ACF
 
   /**
    * The same for what the program allocates from now on, up to a gigabyte or an
-   * eighth of the memory. For the start of a program: many vectors of some
-   * kilobytes, of all bodies, are in more small pages than the processor knows
-   * the addresses of. Takes addresses, but no memory; does nothing where the
-   * system does not have them, or with an allocator other than that of the GNU
-   * C library.
+   * eighth of the memory it may use. For the start of a program: many vectors
+   * of some kilobytes, of all bodies, are in more small pages than the
+   * processor knows the addresses of. Takes addresses, but no memory; does
+   * nothing where the system does not have them, or with an allocator other
+   * than that of the GNU C library.
    */
   void
   keep_heap_in_huge_pages();

@@ -8,9 +8,24 @@
 
 namespace ACF
 {
-  /** Numbers that instructions take at once as far as the processor can. */
+  /** Numbers that instructions take at once as far as the processor can; eight
+   * only where it has registers for them, see run_in_lanes(). */
+  typedef double Two __attribute__((vector_size(16)));
   typedef double Four __attribute__((vector_size(32)));
   typedef double Eight __attribute__((vector_size(64)));
+
+  template <typename Lanes>
+  constexpr unsigned int n_lanes = sizeof(Lanes) / sizeof(double);
+
+  template <typename Lanes>
+  ACF_INLINE double
+  sum_of_lanes(const Lanes &x)
+  {
+    double sum = 0;
+    for (unsigned int lane = 0; lane < n_lanes<Lanes>; ++lane)
+      sum += x[lane];
+    return sum;
+  }
 
   /**
    * A vector of numbers at any address of a number. (Attributes of a type that

@@ -30,9 +30,13 @@ namespace ACF
     any
   };
 
-  /** That of the processor which runs the program. */
+  /** The best one of the processor which runs the program, up to the limit. */
   Processor
   present_processor();
+
+  /** Uses no better one from now on: for tests of all of them. */
+  void
+  limit_processor(const Processor best);
 
   /**
    * Calls loop(), which is compiled once for each instruction set. It is a
@@ -42,11 +46,44 @@ namespace ACF
   void
   run_vectorized(const Loop &loop);
 
+  /**
+   * The same for loops over numbers that may be taken in vectors of any length:
+   * calls loop.run<Lanes>() with the longest vectors that the instruction set
+   * has registers for. (Longer ones compilers take apart: GCC 12 number by
+   * number, through memory, which takes ten times as long.)
+   */
+  template <typename Loop>
+  void
+  run_in_lanes(const Loop &loop);
 
+
+
+  /** Bytes of the registers. */
+  constexpr unsigned int avx512_bytes = 64, avx2_bytes = 32, any_bytes = 16;
 
   namespace internal
   {
+    template <unsigned int n_bytes>
+    struct Lanes
+    {
+      typedef double type __attribute__((vector_size(n_bytes)));
+    };
+
 #if defined(__x86_64__)
+    template <typename Loop>
+    ACF_AVX512 void
+    run_in_lanes_avx512(const Loop &loop)
+    {
+      loop.template run<Lanes<avx512_bytes>::type>();
+    }
+
+    template <typename Loop>
+    ACF_AVX2 void
+    run_in_lanes_avx2(const Loop &loop)
+    {
+      loop.template run<Lanes<avx2_bytes>::type>();
+    }
+
     template <typename Loop>
     ACF_AVX512 void
     run_avx512(const Loop &loop)
@@ -76,6 +113,21 @@ namespace ACF
       return internal::run_avx2(loop);
 #endif
     loop();
+  }
+
+
+
+  template <typename Loop>
+  void
+  run_in_lanes(const Loop &loop)
+  {
+#if defined(__x86_64__)
+    if (present_processor() == Processor::avx512)
+      return internal::run_in_lanes_avx512(loop);
+    if (present_processor() == Processor::avx2)
+      return internal::run_in_lanes_avx2(loop);
+#endif
+    loop.template run<typename internal::Lanes<any_bytes>::type>();
   }
 } // namespace ACF
 
