@@ -100,12 +100,9 @@ namespace ACF
 #endif
       return forward ? forwards : backwards;
     }
-  } // namespace
 
 
 
-  namespace
-  {
     // The components of a node and one number more, which means nothing.
     template <typename Real>
     struct Quads;

@@ -165,7 +165,8 @@ namespace ACF
         newest = std::move(defects.back());
         defects.pop_back();
       }
-    newest.increments.resize(multipliers.size(), SystemVector(products.size()));
+    if (newest.increments.empty())
+      newest.increments = history.steps[0].increments; // for their sizes
     defects.push_front(std::move(newest));
 
     defects[0].multipliers = multipliers;
