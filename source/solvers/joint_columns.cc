@@ -104,7 +104,7 @@ namespace ACF
                   imaginary[piece] += factors[2 * k + 1] * numbers;
               }
           }
-        Lanes signs;
+        Lanes signs = {};
         for (unsigned int lane = 0; lane < width; ++lane)
           signs[lane] = lane % 2 == 0 ? -1 : 1;
         ACF_UNROLL
