@@ -98,6 +98,26 @@ namespace ACF
         return below + vector * (width * n_planes * lanes) + row % lanes;
       }
 
+      // Its number in column c.
+      ACF_INLINE static void
+      load_entry(const Real *const entries,
+                 const unsigned int c,
+                 Real (&b)[n_planes])
+      {
+        ACF_UNROLL
+        for (unsigned int p = 0; p < n_planes; ++p)
+          b[p] = entries[(c * n_planes + p) * lanes];
+      }
+
+      // Component i of a node.
+      ACF_INLINE static void
+      load(const Real *const node, const unsigned int i, Vector (&x)[n_planes])
+      {
+        ACF_UNROLL
+        for (unsigned int p = 0; p < n_planes; ++p)
+          x[p] = load_lanes<Vector>(node + (i * n_planes + p) * lanes);
+      }
+
       // x -= L columns for the rows of a node
       ACF_INLINE void
       subtract(const Columns &columns,
@@ -109,16 +129,12 @@ namespace ACF
           {
             const Real *const entries = row_of_factor(row + i);
             Vector x[n_planes];
-            ACF_UNROLL
-            for (unsigned int p = 0; p < n_planes; ++p)
-              x[p] = load_lanes<Vector>(node + (i * n_planes + p) * lanes);
+            load(node, i, x);
             ACF_UNROLL
             for (unsigned int c = 0; c < width; ++c)
               {
                 Real b[n_planes];
-                ACF_UNROLL
-                for (unsigned int p = 0; p < n_planes; ++p)
-                  b[p] = entries[(c * n_planes + p) * lanes];
+                load_entry(entries, c, b);
                 multiply_add<-1, n_planes>(x, b, columns.x[c]);
               }
             ACF_UNROLL
@@ -139,16 +155,12 @@ namespace ACF
             const unsigned int i      = dim - k;
             const Real *const entries = row_of_factor(row + i);
             Vector x[n_planes];
-            ACF_UNROLL
-            for (unsigned int p = 0; p < n_planes; ++p)
-              x[p] = load_lanes<Vector>(node + (i * n_planes + p) * lanes);
+            load(node, i, x);
             ACF_UNROLL
             for (unsigned int c = 0; c < width; ++c)
               {
                 Real b[n_planes];
-                ACF_UNROLL
-                for (unsigned int p = 0; p < n_planes; ++p)
-                  b[p] = entries[(c * n_planes + p) * lanes];
+                load_entry(entries, c, b);
                 multiply_add<1, n_planes>(sums.x[c], b, x);
               }
           }
