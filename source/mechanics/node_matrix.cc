@@ -3,265 +3,19 @@
 
 #include <acf/base/archive.h>
 #include <acf/base/huge_pages.h>
-#include <acf/base/lanes.h>
 #include <acf/base/parallel.h>
-#include <acf/base/processor.h>
 #include <acf/mechanics/node_matrix.h>
 
 #include <deal.II/base/memory_consumption.h>
 
 #include <algorithm>
 
+#include "node_matrix_kernels.h"
+
 namespace ACF
 {
   namespace
   {
-    // Row i of the block at p for each vector.
-    ACF_INLINE Four
-    block_row(const double *const p, const unsigned int i, Four)
-    {
-      return load_lanes<Four>(p + 3 * i);
-    }
-
-    ACF_INLINE Eight
-    block_row(const double *const p, const unsigned int i, Eight)
-    {
-      const Four row = load_lanes<Four>(p + 3 * i);
-      return __builtin_shufflevector(row, row, 0, 1, 2, 3, 0, 1, 2, 3);
-    }
-
-
-
-    // Component i is the sum over the lanes of s[i].
-    ACF_INLINE Four
-    sums_of_lanes(const Four (&s)[3])
-    {
-      const Four zero = {};
-      const Four s01  = __builtin_shufflevector(s[0], s[1], 0, 4, 2, 6) +
-                       __builtin_shufflevector(s[0], s[1], 1, 5, 3, 7);
-      const Four s2 = __builtin_shufflevector(s[2], zero, 0, 4, 2, 6) +
-                      __builtin_shufflevector(s[2], zero, 1, 5, 3, 7);
-      return __builtin_shufflevector(s01, s2, 0, 1, 4, 5) +
-             __builtin_shufflevector(s01, s2, 2, 3, 6, 7);
-    }
-
-    ACF_INLINE Eight
-    sums_of_lanes(const Eight (&s)[3])
-    {
-      const Four low[3]  = {__builtin_shufflevector(s[0], s[0], 0, 1, 2, 3),
-                            __builtin_shufflevector(s[1], s[1], 0, 1, 2, 3),
-                            __builtin_shufflevector(s[2], s[2], 0, 1, 2, 3)};
-      const Four high[3] = {__builtin_shufflevector(s[0], s[0], 4, 5, 6, 7),
-                            __builtin_shufflevector(s[1], s[1], 4, 5, 6, 7),
-                            __builtin_shufflevector(s[2], s[2], 4, 5, 6, 7)};
-      return __builtin_shufflevector(
-        sums_of_lanes(low), sums_of_lanes(high), 0, 1, 2, 3, 4, 5, 6, 7);
-    }
-
-
-
-    // The kinds of entries. A row of a product is the sum of those with the
-    // entries on and above the diagonal, and of those with the transposed
-    // entries above it, y_b += A_ab^T x_a.
-    struct Block
-    {
-      static constexpr unsigned int size = 9;
-
-      template <typename Lanes>
-      struct Row
-      {
-        explicit ACF_INLINE
-        Row(const Lanes &x)
-          : x{splat<0>(x), splat<1>(x), splat<2>(x)}
-        {}
-
-        // adds the product with an entry, from the left
-        ACF_INLINE void
-        add(const double *const p, const Lanes &x_b)
-        {
-          ACF_UNROLL
-          for (unsigned int i = 0; i < 3; ++i)
-            sums[i] += block_row(p, i, Lanes()) * x_b;
-        }
-
-        ACF_INLINE Lanes
-        transposed(const double *const p) const
-        {
-          return block_row(p, 0, Lanes()) * x[0] +
-                 block_row(p, 1, Lanes()) * x[1] +
-                 block_row(p, 2, Lanes()) * x[2];
-        }
-
-        // the fourth of four lanes, where x is zero, is a number of another
-        // row
-        ACF_INLINE Lanes
-        sum() const
-        {
-          return sums_of_lanes(sums);
-        }
-
-        ACF_INLINE void
-        scale(const double factor)
-        {
-          ACF_UNROLL
-          for (unsigned int i = 0; i < 3; ++i)
-            sums[i] *= factor;
-        }
-
-        // components of x at all places
-        Lanes x[3];
-        // lanes of row i
-        Lanes sums[3] = {};
-      };
-    };
-
-    struct Scalar
-    {
-      static constexpr unsigned int size = 1;
-
-      template <typename Lanes>
-      struct Row
-      {
-        explicit ACF_INLINE
-        Row(const Lanes &x)
-          : x(x)
-        {}
-
-        ACF_INLINE void
-        add(const double *const p, const Lanes &x_b)
-        {
-          total += *p * x_b;
-        }
-
-        ACF_INLINE Lanes
-        transposed(const double *const p) const
-        {
-          return *p * x;
-        }
-
-        ACF_INLINE Lanes
-        sum() const
-        {
-          return total;
-        }
-
-        ACF_INLINE void
-        scale(const double factor)
-        {
-          total *= factor;
-        }
-
-        Lanes x;
-        Lanes total = {};
-      };
-    };
-
-
-
-    // Some rows of a product.
-    struct Rows
-    {
-      const NodeGraph &graph;
-      const double *values;
-      RowRange range;
-
-      // a node is at the bits of its number that this has
-      std::size_t mask;
-      const double *x;
-      double *y;
-    };
-
-    constexpr std::size_t all_bits = -1;
-
-
-
-    // Row a of n vectors, for those that are at the shift.
-    template <unsigned int n, typename Entry, typename Lanes>
-    ACF_INLINE void
-    multiply_row(const Rows &rows, const std::size_t a, const std::size_t shift)
-    {
-      constexpr unsigned int distance  = 4 * n;
-      const NodeGraph &graph           = rows.graph;
-      const std::size_t n_entries      = graph.n_upper(a);
-      const unsigned int *const column = graph.upper_columns(a);
-      const double *const entries =
-        rows.values + Entry::size * graph.upper_start[a];
-      const std::size_t mask = rows.mask;
-      const double *const x  = rows.x + shift;
-      double *const y        = rows.y + shift;
-      const std::size_t own  = distance * (a & mask);
-      const Lanes x_a        = load_lanes<Lanes>(x + own);
-      typename Entry::template Row<Lanes> row(x_a);
-      row.add(entries, x_a);
-      for (std::size_t e = 1; e < n_entries; ++e)
-        {
-          const double *const A_ab = entries + Entry::size * e;
-          const std::size_t b      = distance * (column[e] & mask);
-          row.add(A_ab, load_lanes<Lanes>(x + b));
-          add_lanes(row.transposed(A_ab), y + b);
-        }
-      add_lanes(row.sum(), y + own);
-    }
-
-
-
-    // y needs no values: it becomes zero node by node, when it is reached. Two
-    // vectors are taken at once where there are registers for them.
-    template <unsigned int n, typename Entry, unsigned int n_bytes>
-    ACF_INLINE void
-    multiply_entries(const Rows &rows)
-    {
-      std::size_t reach = rows.range.reach;
-      for (std::size_t a = rows.range.begin; a < rows.range.end; ++a)
-        {
-          for (; reach <= rows.graph.last_column(a); ++reach)
-            {
-              ACF_UNROLL
-              for (unsigned int v = 0; v < n; ++v)
-                store_lanes(Four{}, rows.y + 4 * (n * (reach & rows.mask) + v));
-            }
-          constexpr bool in_pairs     = n_bytes >= sizeof(Eight);
-          constexpr unsigned int done = in_pairs ? n / 2 * 2 : 0;
-          if constexpr (done > 0)
-            multiply_row<n, Entry, Eight>(rows, a, 0);
-          ACF_UNROLL
-          for (unsigned int v = done; v < n; ++v)
-            multiply_row<n, Entry, Four>(rows, a, 4 * v);
-        }
-    }
-
-
-
-    // One function per instruction set.
-#define ACF_PRODUCTS(name, attributes)              \
-  template <unsigned int n, typename Entry>         \
-  attributes void multiply_##name(const Rows &rows) \
-  {                                                 \
-    multiply_entries<n, Entry, name##_bytes>(rows); \
-  }
-
-    ACF_PRODUCTS(any, )
-#if defined(__x86_64__)
-    ACF_PRODUCTS(avx2, ACF_AVX2)
-    ACF_PRODUCTS(avx512, ACF_AVX512)
-#endif
-#undef ACF_PRODUCTS
-
-    template <unsigned int n, typename Entry>
-    void
-    multiply_rows(const Rows &rows)
-    {
-#if defined(__x86_64__)
-      if (present_processor() == Processor::avx512)
-        return multiply_avx512<n, Entry>(rows);
-      if (present_processor() == Processor::avx2)
-        return multiply_avx2<n, Entry>(rows);
-#endif
-      multiply_any<n, Entry>(rows);
-    }
-
-
-
     // Rows of the matrix, whose products reach the nodes from begin to reach.
     struct Part
     {
@@ -279,7 +33,7 @@ namespace ACF
         {
           parts[p].begin = n_nodes * p / n_parts;
           parts[p].end   = n_nodes * (p + 1) / n_parts;
-          parts[p].reach = graph.reach(parts[p].begin, parts[p].end);
+          parts[p].reach = graph.reach[parts[p].end - 1];
         }
       return parts;
     }
@@ -296,24 +50,25 @@ namespace ACF
       constexpr unsigned int distance = 4 * n;
       if (n_ranges(graph.n_nodes()) == 1)
         {
-          multiply_rows<n, Entry>({graph,
-                                   values,
-                                   {0, graph.n_nodes(), 0},
-                                   all_bits,
-                                   x.data(),
-                                   y.data()});
+          Kernels::multiply_rows<n, Entry>({graph,
+                                            values,
+                                            {0, graph.n_nodes(), 0},
+                                            Kernels::all_bits,
+                                            x.data(),
+                                            y.data()});
           return;
         }
       std::vector<Part> parts = divide(graph);
       run_tasks(parts.size(), [&](const unsigned int p) {
         Part &part = parts[p];
         part.y.resize_fast(distance * (part.reach - part.begin));
-        multiply_rows<n, Entry>({graph,
-                                 values,
-                                 {part.begin, part.end, part.begin},
-                                 all_bits,
-                                 x.data(),
-                                 part.y.data() - distance * part.begin});
+        Kernels::multiply_rows<n, Entry>(
+          {graph,
+           values,
+           {part.begin, part.end, part.begin},
+           Kernels::all_bits,
+           x.data(),
+           part.y.data() - distance * part.begin});
       });
 
       // of the part that has the row and of those before which reach it
@@ -365,50 +120,17 @@ namespace ACF
       Assert((x.n_nodes() & (x.n_nodes() - 1)) == 0, ExcInternalError());
       AssertDimension(x.n_nodes(), y.n_nodes());
       AssertDimension(x.n_vectors(), y.n_vectors());
-      const Rows rows{
+      const Kernels::Rows rows{
         graph, values, range, x.n_nodes() - 1, x.data(), y.data()};
       if (x.n_vectors() == 1)
-        multiply_rows<1, Entry>(rows);
+        Kernels::multiply_rows<1, Entry>(rows);
       else if (x.n_vectors() == 2)
-        multiply_rows<2, Entry>(rows);
+        Kernels::multiply_rows<2, Entry>(rows);
       else
-        multiply_rows<3, Entry>(rows);
+        Kernels::multiply_rows<3, Entry>(rows);
     }
 
 
-
-    // The sum over some rows of x_a (A_aa x_a + 2 sum_b>a A_ab x_b).
-    template <typename Entry>
-    struct QuadraticForm
-    {
-      ACF_INLINE void
-      operator()() const
-      {
-        Four sum = {};
-        for (std::size_t a = begin; a < end; ++a)
-          {
-            const std::size_t n_entries      = graph.n_upper(a);
-            const unsigned int *const column = graph.upper_columns(a);
-            const double *const entries =
-              values + Entry::size * graph.upper_start[a];
-            const Four x_a = load_three(x + 3 * a);
-            typename Entry::template Row<Four> row(x_a);
-            for (std::size_t e = 1; e < n_entries; ++e)
-              row.add(entries + Entry::size * e,
-                      load_three(x + 3 * std::size_t(column[e])));
-            row.scale(2);
-            row.add(entries, x_a);
-            sum += x_a * row.sum();
-          }
-        result = sum[0] + sum[1] + sum[2];
-      }
-
-      const NodeGraph &graph;
-      const double *values;
-      const double *x;
-      std::size_t begin, end;
-      double &result;
-    };
 
     template <typename Entry>
     double
@@ -420,8 +142,8 @@ namespace ACF
       return sum_ranges<double>(
         graph.n_nodes(), [&](const std::size_t begin, const std::size_t end) {
           double result;
-          run_vectorized(
-            QuadraticForm<Entry>{graph, values, x.begin(), begin, end, result});
+          run_vectorized(Kernels::QuadraticForm<Entry>{
+            graph, values, x.begin(), begin, end, result});
           return result;
         });
     }
@@ -459,27 +181,16 @@ namespace ACF
     , column(std::move(new_column))
     , upper_start(row_start.size(), 0)
   {
-    unsigned int largest_reach = 0;
+    reach.reserve(n_nodes());
     for (unsigned int a = 0; a < n_nodes(); ++a)
       {
         const auto begin = column.begin() + row_start[a];
         const auto end   = column.begin() + row_start[a + 1];
         upper_start[a + 1] =
           upper_start[a] + (end - std::lower_bound(begin, end, a));
-        largest_reach = std::max(largest_reach, last_column(a) + 1);
-        bandwidth     = std::max(bandwidth, largest_reach - a);
+        reach.push_back(std::max(a == 0 ? 0 : reach.back(), *(end - 1) + 1));
+        bandwidth = std::max(bandwidth, reach.back() - a);
       }
-  }
-
-
-
-  std::size_t
-  NodeGraph::reach(const std::size_t begin, const std::size_t end) const
-  {
-    std::size_t result = end;
-    for (std::size_t a = begin; a < end; ++a)
-      result = std::max<std::size_t>(result, last_column(a) + 1);
-    return result;
   }
 
 
@@ -502,7 +213,8 @@ namespace ACF
   {
     return MemoryConsumption::memory_consumption(row_start) +
            MemoryConsumption::memory_consumption(upper_start) +
-           MemoryConsumption::memory_consumption(column);
+           MemoryConsumption::memory_consumption(column) +
+           MemoryConsumption::memory_consumption(reach);
   }
 
 
@@ -538,7 +250,7 @@ namespace ACF
   ScalarNodeMatrix::vmult(const std::vector<NodalVector *> &y,
                           const std::vector<const NodalVector *> &x) const
   {
-    multiply<Scalar>(*node_graph, values.data(), y, x);
+    multiply<Kernels::Scalar>(*node_graph, values.data(), y, x);
   }
 
 
@@ -548,7 +260,7 @@ namespace ACF
                              NodeLanes &y,
                              const NodeLanes &x) const
   {
-    ACF::add_rows<Scalar>(*node_graph, values.data(), rows, y, x);
+    ACF::add_rows<Kernels::Scalar>(*node_graph, values.data(), rows, y, x);
   }
 
 
@@ -556,7 +268,7 @@ namespace ACF
   double
   ScalarNodeMatrix::quadratic_form(const NodalVector &x) const
   {
-    return ACF::quadratic_form<Scalar>(*node_graph, values.data(), x);
+    return ACF::quadratic_form<Kernels::Scalar>(*node_graph, values.data(), x);
   }
 
 
@@ -635,7 +347,7 @@ namespace ACF
   BlockNodeMatrix::vmult(const std::vector<NodalVector *> &y,
                          const std::vector<const NodalVector *> &x) const
   {
-    multiply<Block>(*node_graph, values.data(), y, x);
+    multiply<Kernels::Block>(*node_graph, values.data(), y, x);
   }
 
 
@@ -643,7 +355,7 @@ namespace ACF
   double
   BlockNodeMatrix::quadratic_form(const NodalVector &x) const
   {
-    return ACF::quadratic_form<Block>(*node_graph, values.data(), x);
+    return ACF::quadratic_form<Kernels::Block>(*node_graph, values.data(), x);
   }
 
 
@@ -653,7 +365,7 @@ namespace ACF
                             NodeLanes &y,
                             const NodeLanes &x) const
   {
-    ACF::add_rows<Block>(*node_graph, values.data(), rows, y, x);
+    ACF::add_rows<Kernels::Block>(*node_graph, values.data(), rows, y, x);
   }
 
 

@@ -328,7 +328,7 @@ namespace ACF
           const std::size_t last = std::min(first + n_rows, end);
           const RowRange rows{first, last, fill.end};
           fill.begin = fill.end;
-          fill.end   = std::max(fill.end, graph.reach(first, last));
+          fill.end   = graph.reach[last - 1];
           run_vectorized(fill);
           body.stiffness_matrix.add_rows(rows,
                                          windows.stiffness_products,

@@ -387,7 +387,7 @@ namespace ACF
   {
     const bool has_markers = !system.body_markers(b).empty();
     const bool is_changed  = !changes.empty() && changes[b].columns.cols() > 0;
-    if (bodies_are_free)
+    if (right_hand_sides_are_zero)
       {
         if (!has_markers && !is_changed)
           return nullptr;
@@ -412,7 +412,7 @@ namespace ACF
   typename CoupledSystem<Number>::Vector
   CoupledSystem<Number>::solve(const Vector &g)
   {
-    bodies_are_free = false;
+    right_hand_sides_are_zero = false;
     solve_bodies();
     if (system.n_marker_values() + n_change_unknowns == 0)
       return g;
@@ -440,7 +440,7 @@ namespace ACF
   typename CoupledSystem<Number>::Vector
   CoupledSystem<Number>::solve_constraints(const Vector &g)
   {
-    bodies_are_free = true;
+    right_hand_sides_are_zero = true;
     if (system.n_marker_values() == 0)
       return g;
     return couple(Vector::Zero(system.n_marker_values()),

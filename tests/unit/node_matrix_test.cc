@@ -200,7 +200,7 @@ TEST_WITH_ALL_INSTRUCTIONS(NodeMatrix, RowsAndQuadraticForms)
                 {
                   const unsigned int end = std::min(begin + n_rows, n_nodes);
                   const RowRange rows{begin, end, reach};
-                  for (; reach < graph->reach(begin, end); ++reach)
+                  for (; reach < graph->reach[end - 1]; ++reach)
                     for (unsigned int v = 0; v < n_vectors; ++v)
                       {
                         double *const place =

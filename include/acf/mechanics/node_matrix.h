@@ -59,18 +59,11 @@ namespace ACF
       return &column[row_start[row + 1] - n_upper(row)];
     }
 
-    unsigned int
-    last_column(const unsigned int row) const
-    {
-      return column[row_start[row + 1] - 1];
-    }
+    /** The first node behind all that a row and those before it have entries
+     * for; size n_nodes. */
+    std::vector<unsigned int> reach;
 
-    /** The first node behind all that these rows have entries for; at least
-     * @p end. */
-    std::size_t
-    reach(const std::size_t begin, const std::size_t end) const;
-
-    /** Nodes from a row to the reach of it and all rows before, at most. */
+    /** Nodes from a row to its reach, at most. */
     unsigned int bandwidth = 0;
 
     /** Bytes held. */
@@ -85,8 +78,7 @@ namespace ACF
   {
     std::size_t begin, end;
 
-    /** What NodeGraph::reach() was for the rows before; begin for the first
-     * ones. */
+    /** That of the row before (NodeGraph); begin for the first ones. */
     std::size_t reach;
   };
 

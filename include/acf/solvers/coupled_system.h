@@ -231,7 +231,7 @@ namespace ACF
      * changes, and whether the $r_b$ are zero. */
     Vector marker_forces;
     Vector unknowns;
-    bool bodies_are_free = false;
+    bool right_hand_sides_are_zero = false;
   };
 } // namespace ACF
 
