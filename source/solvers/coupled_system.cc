@@ -391,13 +391,15 @@ namespace ACF
       {
         if (!has_markers && !is_changed)
           return nullptr;
-        std::fill(body(b), body(b) + factors[b]->size(), Number(0));
+        if (!has_markers)
+          std::fill(body(b), body(b) + factors[b]->size(), Number(0));
       }
     if (has_markers)
       factors[b]->subtract_columns(
         compliances[b].functional_forces(
           marker_forces.segment(first_values[b], compliances[b].n_values())),
-        body(b));
+        body(b),
+        right_hand_sides_are_zero);
     if (is_changed)
       Eigen::Map<Vector>(body(b), factors[b]->size()) -=
         changes[b].solutions *

@@ -64,9 +64,10 @@ namespace ACF
   template <typename Number>
   void
   JointedFactorization<Number>::subtract_columns(const Vector &F,
-                                                 Number *x) const
+                                                 Number *x,
+                                                 const bool x_is_zero) const
   {
-    columns.subtract_product(F, x);
+    columns.subtract_product(F, x, x_is_zero);
   }
 
 

@@ -59,7 +59,8 @@ namespace ACF
 
 
 
-    // x -= Y F for the blocks from begin to end. Complex numbers are pairs.
+    // x -= Y F, or x = -Y F, for the blocks from begin to end. Complex numbers
+    // are pairs.
     template <typename Real, bool is_complex>
     struct SubtractProduct
     {
@@ -112,7 +113,10 @@ namespace ACF
           {
             if (is_complex)
               real[piece] += signs * swap_parts(imaginary[piece]);
-            add_lanes(-real[piece], x_block + width * piece);
+            if (x_is_zero)
+              store_lanes(-real[piece], x_block + width * piece);
+            else
+              add_lanes(-real[piece], x_block + width * piece);
           }
       }
 
@@ -122,6 +126,7 @@ namespace ACF
       // real and imaginary part of each
       const double *factors;
       double *x;
+      bool x_is_zero;
 
       // numbers of x
       std::size_t n;
@@ -140,7 +145,8 @@ namespace ACF
     subtract(const dealii::AlignedVector<Real> &values,
              const Eigen::Matrix<Number, Eigen::Dynamic, 1> &F,
              const std::size_t n_rows,
-             Number *const x)
+             Number *const x,
+             const bool x_is_zero)
     {
       std::vector<double> factors;
       for (unsigned int k = 0; k < F.size(); ++k)
@@ -158,6 +164,7 @@ namespace ACF
             static_cast<std::size_t>(F.size()),
             factors.data(),
             reinterpret_cast<double *>(x),
+            x_is_zero,
             n,
             begin,
             end});
@@ -252,13 +259,15 @@ namespace ACF
 
   template <typename Number>
   void
-  JointColumns<Number>::subtract_product(const Vector &F, Number *const x) const
+  JointColumns<Number>::subtract_product(const Vector &F,
+                                         Number *const x,
+                                         const bool x_is_zero) const
   {
     AssertDimension(static_cast<std::size_t>(F.size()), n_columns);
     if (single_values.empty())
-      subtract(double_values, F, n_rows, x);
+      subtract(double_values, F, n_rows, x, x_is_zero);
     else
-      subtract(single_values, F, n_rows, x);
+      subtract(single_values, F, n_rows, x, x_is_zero);
   }
 
 

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 #include <unit/all_instructions.h>
 
 using namespace ACF;
@@ -41,8 +43,15 @@ namespace
       Vector result;
       Testing::with_all_instructions([&]() {
         result = x;
-        columns.subtract_product(F, result.data());
+        columns.subtract_product(F, result.data(), false);
         EXPECT_LT((result - expected).template lpNorm<Eigen::Infinity>(),
+                  tolerance)
+          << n_rows << " rows, " << n_columns << " columns";
+        Vector from_zero =
+          Vector::Constant(n_rows,
+                           Number(std::numeric_limits<double>::quiet_NaN()));
+        columns.subtract_product(F, from_zero.data(), true);
+        EXPECT_LT((x + from_zero - expected).template lpNorm<Eigen::Infinity>(),
                   tolerance)
           << n_rows << " rows, " << n_columns << " columns";
       });

@@ -58,9 +58,10 @@ namespace ACF
     Eigen::Matrix<Number, dim, 1>
     functional_value(const unsigned int functional, const Number *x) const;
 
-    /** $x \leftarrow x - Y F$ for forces F on the functionals, size 3 n. */
+    /** $x \leftarrow x - Y F$ for forces F on the functionals, size 3 n.
+     * @param x_is_zero whether x stands for zero, whatever its numbers are */
     void
-    subtract_columns(const Vector &F, Number *x) const;
+    subtract_columns(const Vector &F, Number *x, const bool x_is_zero) const;
 
     std::size_t
     size() const

@@ -44,9 +44,10 @@ namespace ACF
 
     /** $x \leftarrow x - Y F$
      * @param F size of the number of columns
-     * @param[in,out] x size n_rows */
+     * @param[in,out] x size n_rows
+     * @param x_is_zero whether x stands for zero, whatever its numbers are */
     void
-    subtract_product(const Vector &F, Number *x) const;
+    subtract_product(const Vector &F, Number *x, const bool x_is_zero) const;
 
     /** What is held. */
     std::size_t
